@@ -10,7 +10,7 @@ from pathlib import Path
 from schuler_bench.bridge.program import SCRIPTS, viser_program
 
 _STATIC = Path(__file__).parent / "static"
-FIRST_SCRIPTS = (*SCRIPTS, _STATIC / "first.js", _STATIC / "plotly.js")
+FIRST_SCRIPTS = (*SCRIPTS, *(_STATIC / f"{name}.js" for name in ("first", "without3d", "plotly")))
 """Ours that every page has; the last loads plotly.js."""
 PLOTLY = _STATIC / "plotly-basic.min.js"
 """plotly.js with scatter, bar and pie alone (npm: plotly.js-basic-dist-min): a fifth of the whole to read."""

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from schuler_bench.session.session import Session
+from tests.browser.conftest import Another
 from tests.browser.driver import Bench
 from tests.browser.placing import place
 
@@ -127,3 +128,93 @@ def test_the_handle_of_the_bode_plot_stands_on_its_curve(bench: Bench) -> None:
     bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)
     bench.reset("zha-fast", "Frequency", "Errors", "Method", selected=2)
     bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)
+
+
+FIREFOX = (
+    "anonymous@http://127.0.0.1/static/viser.js:1:2\n@http://127.0.0.1/static/viser.js:wasm-function[7]:0x1f"
+)
+
+
+@pytest.mark.parametrize(
+    ("stack", "kept_off"),
+    [("at wasm://wasm/0a:wasm-function[7]:0x1f", True), (FIREFOX, True), ("at draw (bench.js:1:2)", False)],
+)
+def test_the_sorters_complaint_alone_is_kept_off_the_console(
+    bench: Bench, stack: str, kept_off: bool
+) -> None:
+    prevented = bench.page.evaluate(
+        """stack => {
+          const reason = Object.defineProperty(new EvalError("no eval"), "stack", { value: stack });
+          const event = new Event("unhandledrejection", { cancelable: true });
+          event.reason = reason;
+          return !dispatchEvent(event);
+        }""",
+        stack,
+    )
+    assert prevented is kept_off
+
+
+def test_a_browser_that_blocks_cookies_brings_the_tabs_of_the_address(another: Another) -> None:
+    bench = another(1280, 720)
+    bench.page.add_init_script(
+        """const get = () => { throw new DOMException("blocked", "SecurityError"); };
+        for (const store of ["sessionStorage", "localStorage"])
+          Object.defineProperty(window, store, { get });"""
+    )
+    bench.open(query="?fixedDpr=0.25&start=no&tab=Poles,Sensors")
+    for name in ("Poles", "Sensors"):
+        tab = bench.page.get_by_role("tab", name=name, exact=True)
+        bench.wait_until(lambda tab=tab: tab.get_attribute("aria-selected") == "true", 10.0)
+
+
+def test_forced_colours_leave_legends_and_slider_tracks(fresh: Bench) -> None:
+    # names, of which the colour behind them is read
+    shown = """() => Object.fromEntries([[".sb-entry .sb-line", null], [".mantine-Slider-track", "::before"],
+      [".mantine-Slider-bar", null], [".mantine-Slider-thumb", null]].map(([where, part]) => [where,
+        [...document.querySelectorAll(where)].filter((each) => each.getClientRects().length > 0)
+          .map((each) => getComputedStyle(each, part).backgroundColor)]))"""
+    page = fresh.page
+    paper = """() => {
+      const sample = document.body.appendChild(document.createElement("i"));
+      sample.style.color = "Canvas";
+      return getComputedStyle(sample).color;
+    }"""
+    curves = fresh.page.evaluate(shown)[".sb-entry .sb-line"]
+    page.emulate_media(forced_colors="active")
+    try:
+        held, canvas = page.evaluate(shown), page.evaluate(paper)
+        assert held[".sb-entry .sb-line"] == curves and len(set(curves)) >= 3
+        nothing = {canvas, "rgba(0, 0, 0, 0)"}
+        gone = {where: nothing.intersection(found) for where, found in held.items()}
+        assert gone == dict.fromkeys(held, set()) and all(held.values())
+    finally:
+        page.emulate_media(forced_colors="none")
+
+
+def test_without_webgl_the_page_comes_without_3d_and_says_so(another: Another) -> None:
+    bench = another(1280, 720)
+    # as a browser without WebGL answers
+    bench.page.add_init_script(
+        """const real = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+          return kind.includes("webgl") ? null : real.call(this, kind, ...rest);
+        };"""
+    )
+    bench.open()
+    bench.page.get_by_text("No 3D view: this browser has no WebGL.").wait_for()
+    bench.reset("zha-fast", "Errors", "Method", selected=2)
+    bench.type("network.xi", "0.6")
+    bench.tab("Metrics")
+    assert bench.page.locator(".sb-t >> visible=true").count() > 0
+
+
+def test_a_lost_context_is_told_and_the_page_goes_on(another: Another) -> None:
+    bench = another(1280, 720).open()
+    bench.page.evaluate(
+        """() => document.querySelector("canvas[data-engine]").getContext("webgl2")
+          .getExtension("WEBGL_lose_context").loseContext()"""
+    )
+    bench.page.get_by_text("The 3D view is lost").wait_for()
+    bench.reset("zha-fast", "Errors", "Method", selected=2)
+    bench.type("network.xi", "0.6")
+    bench.faults.clear()  # the browser itself tells of the lost context

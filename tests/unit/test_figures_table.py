@@ -57,6 +57,25 @@ def test_differences_are_those_of_methods_of_the_same_name() -> None:
     assert float(percent) == pytest.approx(100.0 * (new / old - 1.0), abs=0.06)
 
 
+def test_the_edited_method_is_compared_with_what_it_was_under_another_name() -> None:
+    run, before = static_run(), run_of(method=[THREE[0] | {"name": "earlier"}])
+    pin = Pinned("a", "#000000", before)
+
+    def changes(edited: tuple[int, str] | None) -> tuple[str, ...]:
+        rows = metrics_rows(run, Display(delta="rms"), pin, edited)
+        return next(row.deltas for row in rows if row.label == "velocity δVE")
+
+    assert changes(None) == ("not in it",) * 3
+    change, *others = changes((0, "earlier"))
+    new, old = (each.methods[0].errors["dve_mps"]["rms"] for each in (run, before))
+    assert float(change.split(" ")[0]) == pytest.approx(new - old, rel=6e-3) and others == ["not in it"] * 2
+    html = metrics_html(run, display=Display(), baseline=pin, edited=(0, "earlier"))
+    assert f"{run.methods[0].method.name} is compared with earlier" in html
+    # a method that still is there under its name is not compared with another one
+    pin = Pinned("a", "#000000", run_of(method=[THREE[1]]))
+    assert changes((0, run.methods[1].method.name))[0] == "not in it"
+
+
 def test_table_has_a_column_of_differences(pin: Pinned) -> None:
     run = static_run()
     rows = {(row.label, row.unit): row for row in metrics_rows(run, Display(delta="final"), pin)}

@@ -23,6 +23,7 @@ from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of, limit
 from schuler_bench.session.display import Display
 from schuler_bench.session.requirements import error_limits, limits_of, verdicts
 from schuler_bench.session.shown import window_of
+from schuler_bench.views.compare.table import lines_of, pins_html
 from schuler_bench.views.requirements.table import requirements_html
 from schuler_bench.views.requirements.view import RequirementsView
 from schuler_bench.views.tune.setting import requirements_as_text
@@ -165,6 +166,21 @@ def test_table_says_in_words_who_meets_what() -> None:
     assert [word in html for word in (*words, "<b>free")] == [True] * 4 + [False]
     assert "nothing asked" in requirements_html(run)
     assert "✓ meets it" in requirements_html(under(run, tilt_overshoot=150.0))
+
+
+def test_pins_say_which_limits_they_miss() -> None:
+    run = under(run_of(method=[{"name": "<b>free"}, THREE[1]]), damping_ratio=0.5, settling_s=10.0)
+    missed = [
+        line
+        for place in (0, 1)
+        for line in lines_of(window_of(run, Display()), run, place, ())
+        if line.missed
+    ]
+    assert missed
+    for line in missed:
+        html = pins_html([line], "pinned", None)
+        assert f"✗ misses {len(line.missed)} of 2: {', '.join(line.missed)}" in html
+        assert {"damping ratio", "settling"} >= set(line.missed)
 
 
 # ------------------------------------------------------------ kept with the display

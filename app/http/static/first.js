@@ -14,9 +14,9 @@
 
   // viser starts its sorter of Gaussian splats on every page. The sorter makes functions from text, which the
   // Content-Security-Policy of this server forbids. Nothing here draws splats: keep that one complaint off the console,
-  // so that a real one is noticed.
+  // so that a real one is noticed. Where it comes from is `wasm://...` in Chromium's words, `wasm-function[...]` in Firefox's.
   addEventListener("unhandledrejection", (event) => {
     const error = event.reason;
-    if (error instanceof EvalError && /wasm:/.test(error.stack || "")) event.preventDefault();
+    if (error instanceof EvalError && /wasm(:|-function)/.test(error.stack || "")) event.preventDefault();
   });
 })();

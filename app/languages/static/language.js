@@ -67,7 +67,11 @@
       const next = ours(wanted);
       if (next === undefined || next === language) return;
       const tabs = document.querySelectorAll('[role="tab"][aria-selected="true"]');
-      sessionStorage.setItem(FRONT, JSON.stringify([...tabs].map((tab) => window.schuler.english(tab.textContent))));
+      try {
+        sessionStorage.setItem(FRONT, JSON.stringify([...tabs].map((tab) => window.schuler.english(tab.textContent))));
+      } catch {
+        // A browser that blocks cookies refuses its store, too: the tabs in front are those of a new page.
+      }
       keep(next, true);
       const address = new URL(location.href);
       address.searchParams.delete("lang");

@@ -4,10 +4,20 @@
   const KEPT = "schuler-front";
   const MOST = 12;
   const STEADY = 4; // checks in a row: the page may be laid out anew while it opens
-  const kept = JSON.parse(sessionStorage.getItem(KEPT) ?? "[]");
-  sessionStorage.removeItem(KEPT);
+  const kept = fromStore();
   const named = new URLSearchParams(location.search).getAll("tab").flatMap((names) => names.split(","));
   const wanted = (kept.length > 0 ? kept : named.filter((name) => name.trim() !== "")).slice(0, MOST);
+
+  // A browser that blocks cookies refuses its store, too: then nothing was kept.
+  function fromStore() {
+    try {
+      const text = sessionStorage.getItem(KEPT);
+      sessionStorage.removeItem(KEPT);
+      return JSON.parse(text ?? "[]");
+    } catch {
+      return [];
+    }
+  }
 
   const plain = (name) => name.toLowerCase().replace(/[^\p{L}\p{N}]/gu, "");
   const english = (tab) => window.schuler.english(tab.textContent);

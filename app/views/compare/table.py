@@ -54,6 +54,8 @@ class Line:
         What is measured, by the keys of `COLUMNS`; none while the run is being computed.
     asked : int
         Requirements there are.
+    missed : tuple of str
+        Labels of those that it misses.
     """
 
     pin: Pin | None
@@ -61,6 +63,7 @@ class Line:
     method: str
     numbers: dict[str, float]
     asked: int = 0
+    missed: tuple[str, ...] = ()
 
     def key(self, column: str) -> tuple[bool, float, str]:
         """By what it is sorted: what is not known comes last."""
@@ -105,9 +108,10 @@ def _line(
     method = part.methods[place]
     numbers = {name: measure(method, one.key) / one.size for name, one in MEASURED.items()}
     limits = asked(whole, requirements)
+    missed = tuple(verdict.quantity.label for verdict in limits if not verdict.passed[place])
     if limits:
-        numbers["verdict"] = float(sum(not verdict.passed[place] for verdict in limits))
-    return Line(pin, color, method.method.name, numbers, len(limits))
+        numbers["verdict"] = float(len(missed))
+    return Line(pin, color, method.method.name, numbers, len(limits), missed)
 
 
 def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: bool = True) -> str:
@@ -172,7 +176,7 @@ def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:
     if name == "verdict":
-        return cell(overall(round(line.numbers.get("verdict", 0.0)), line.asked), "sb-n")
+        return cell(overall(len(line.missed), line.asked, line.missed), "sb-n")
     value = line.numbers[name]
     text = "never" if name == "settling" and math.isinf(value) else rounded(value)
     mark = {"look": "sb-best", "title": style.BEST} if best.get(name) == value else {}

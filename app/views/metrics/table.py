@@ -60,7 +60,12 @@ class Row:
     best: tuple[tuple[bool, ...], ...] = ()
 
 
-def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | None = None) -> tuple[Row, ...]:
+def metrics_rows(
+    run: Run,
+    display: Display | None = None,
+    baseline: Pinned | None = None,
+    edited: tuple[int, str] | None = None,
+) -> tuple[Row, ...]:
     """Lines of the table: the loop's figures, then the errors of each quantity.
 
     Parameters
@@ -71,6 +76,9 @@ def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | No
         Units, and which number is compared.
     baseline : Pinned, optional
         What it is compared with.
+    edited : (int, str), optional
+        Place of the method that is edited now, and name of the one that was edited in the baseline: they are
+        compared where the baseline has no method of the present name.
     """
     display = display or Display()
     before = None if baseline is None else baseline.run
@@ -85,19 +93,34 @@ def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | No
     for error, unit in quantities:
         row = _error_row(run, error, unit)
         if before is not None:
-            row = replace(row, deltas=_delta_texts(run, before, error.name, display.delta, unit))
+            row = replace(row, deltas=_delta_texts(run, before, error.name, display.delta, unit, edited))
         rows.append(row)
     return tuple(rows)
 
 
-def _delta_texts(run: Run, baseline: Run, name: str, statistic: str, unit: Unit) -> tuple[str, ...]:
+def _delta_texts(
+    run: Run, baseline: Run, name: str, statistic: str, unit: Unit, edited: tuple[int, str] | None
+) -> tuple[str, ...]:
     """For every method what has changed against the baseline's method of the same name."""
     old = {method.method.name: method.errors[name][statistic] for method in baseline.methods}
-    new = {method.method.name: method.errors[name][statistic] for method in run.methods}
+    pairs = zip(run.methods, _compared(run, baseline, edited), strict=True)
     return tuple(
-        difference_text(value, old[method], unit) if method in old else Text("not in it")
-        for method, value in new.items()
+        Text("not in it")
+        if other is None
+        else difference_text(method.errors[name][statistic], old[other], unit)
+        for method, other in pairs
     )
+
+
+def _compared(run: Run, baseline: Run, edited: tuple[int, str] | None) -> list[str | None]:
+    """For every method the name of the baseline's method with which it is compared; None without one."""
+    known = {method.method.name for method in baseline.methods}
+    names = [method.method.name for method in run.methods]
+    place, before = edited or (-1, "")
+    return [
+        name if name in known else before if i == place and before in known - set(names) else None
+        for i, name in enumerate(names)
+    ]
 
 
 def difference_rows(verification: Verification) -> tuple[Row, ...]:
@@ -217,6 +240,7 @@ def metrics_html(
     old: bool = False,
     display: Display | None = None,
     baseline: Pinned | None = None,
+    edited: tuple[int, str] | None = None,
 ) -> str:
     """Return the metrics of a run as an HTML table, with the methods' colours and aligned figures.
 
@@ -234,6 +258,8 @@ def metrics_html(
         Units, and which number is compared.
     baseline : Pinned, optional
         Adds a column of differences to each method.
+    edited : (int, str), optional
+        See `metrics_rows`.
     """
     places = range(len(run.methods)) if methods is None else methods
     compares = baseline is not None and baseline.run is not None
@@ -247,16 +273,20 @@ def metrics_html(
         row([cell(), cell(), *(_method_head(run, i, columns) for i in places)]),
         row([cell(), cell(Text("unit"), "sb-m", tag="th"), *below]),
     ]
-    rows = metrics_rows(run, display, baseline)
+    rows = metrics_rows(run, display, baseline, edited)
     decimals = _decimals(rows)
     body = [_html_row(_part(each, places), columns, decimals) for each in rows]
-    if baseline is not None and compares:
+    if baseline is not None and baseline.run is not None:
         foot = Text(
             'Δ: this run minus <b style="color:{hex}">{name:html}</b>, the method of the same name; '
             "in the unit of the line, and as a part of the baseline's number",
             hex=baseline.hex,
             name=baseline.name,
         )
+        others = zip(run.methods, _compared(run, baseline.run, edited), strict=True)
+        renamed = [(m.method.name, other) for m, other in others if other not in (None, m.method.name)]
+        for now, before in renamed:
+            foot += Text("; {now:html} is compared with {before:html}", now=now, before=before)
         body.append(row([cell(foot, "sb-foot", colspan=width)]))
     if verification is not None:
         title = Text("Full strapdown minus linear model: largest difference (part of the strapdown's peak)")

@@ -246,6 +246,7 @@ class MetricsView(PictureView[tuple[str, str]]):
         layout, run, verified, baseline = self.frame.layout(), window.run, now.verified, now.baseline
         if baseline is not None and baseline.run is not None:
             baseline = replace(baseline, run=window.of(baseline.run))
+        edited = None if now.baseline is None else (now.selected, now.baseline.method)
         each_px = method_px(metrics_rows(run, now.display), _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
         each_px += 0 if baseline is None else _DELTA_PX[layout.wide]
         most = max(int((layout.text_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
@@ -257,7 +258,9 @@ class MetricsView(PictureView[tuple[str, str]]):
             (
                 Text(
                     '<div style="margin-bottom:2px">{metrics}</div>',
-                    metrics=metrics_html(run, part, beside, old=old, display=now.display, baseline=baseline),
+                    metrics=metrics_html(
+                        run, part, beside, old=old, display=now.display, baseline=baseline, edited=edited
+                    ),
                 )
                 for part in parts(len(run.methods), most)
             ),

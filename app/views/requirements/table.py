@@ -127,10 +127,14 @@ def _overall(judged: tuple[Verdict, ...], index: int) -> str:
     return overall(sum(not verdict.passed[index] for verdict in asked), len(asked))
 
 
-def overall(missed: int, asked: int) -> str:
-    """Badge that says how many of the limits a method misses."""
+def overall(missed: int, asked: int, which: Sequence[str] = ()) -> str:
+    """Badge that says how many of the limits a method misses, and ``which``, where nothing else says it."""
     if not asked:
         return cell(Text("nothing asked"), "sb-muted", tag="span")
+    if missed and which:
+        names = Text.joined(", ", which)
+        text = Text("✗ misses {missed} of {asked}: {names:html}", missed=missed, asked=asked, names=names)
+        return _badge(text, False)
     if missed:
         return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=asked), False)
     return _badge(Text("✓ meets all {asked}", asked=asked) if asked > 1 else Text("✓ meets it"), True)

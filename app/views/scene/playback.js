@@ -6,6 +6,10 @@
   const AFTER_SCRUB_MS = 500;
   const HEARD_MS = 250;
   const CHOICE_MS = 2000;
+  const WITHOUT = {
+    missing: "No 3D view: this browser has no WebGL. Controls, plots and tables work.",
+    lost: "The 3D view is lost: the browser has taken its WebGL away. Controls, plots and tables work. Load the page again to get it back.",
+  };
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
   let now = null;
   let shown = "";
@@ -108,7 +112,9 @@
 
   // The entries stay what they are while only their errors change: a click ends on the button on which it began.
   function showKey() {
-    write(find("caption"), [now.caption, ...(soft ? ["; 3D drawn in software"] : [])].map(window.schuler.say).join(""));
+    const without = WITHOUT[window.schuler.without3d];
+    const words = without !== undefined ? [without] : [now.caption, ...(soft ? ["; 3D drawn in software"] : [])];
+    write(find("caption"), words.map(window.schuler.say).join(""));
     const box = find("key");
     const names = now.key.map((each) => each.key).join("\n");
     if (box.dataset.names !== names) {
@@ -210,6 +216,7 @@
     update(source);
     tellShown();
   });
+  addEventListener("without3d", () => now !== null && showKey());
   setInterval(() => {
     if (now === null) return;
     choose();
