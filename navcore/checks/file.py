@@ -19,6 +19,7 @@ from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
 from navcore.io.series import Recording, Series, SourceReport, StreamReport, utc_text
 from navcore.io.source import require_file
+from navcore.io.suspects import suspect_warnings
 
 _SNIFFED_BYTES = 8192
 _NAMES = {
@@ -259,6 +260,7 @@ def _extent(key: str, extent: list[float]) -> str:
 
 def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
     existing = [*source.warnings, *speed_warnings(recording), *course_warnings(recording)]
+    existing += suspect_warnings(recording)
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()
         if gaps:
