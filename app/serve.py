@@ -61,6 +61,7 @@ _READERS = (
     "navcore.io.nmea_recording",
     "navcore.io.tables",
     "navcore.scenario.file",
+    "pyarrow.csv",
     "pyarrow.parquet",
     "scipy.io",
 )

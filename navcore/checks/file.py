@@ -20,6 +20,7 @@ from navcore.io.recording import read_recording
 from navcore.io.series import Recording, Series, SourceReport, StreamReport, utc_text
 from navcore.io.source import require_file
 from navcore.io.stretches import stretch_warnings
+from navcore.io.suspects import suspect_warnings
 
 _SNIFFED_BYTES = 8192
 _NAMES = {
@@ -264,6 +265,7 @@ def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
         *speed_warnings(recording),
         *stretch_warnings(recording.water, recording.ground, recording.velocity),
         *course_warnings(recording),
+        *suspect_warnings(recording),
     ]
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()

@@ -6,6 +6,13 @@ from typing import Any
 import numpy as np
 
 from navcore.checks.file import Checker, FileReport, check_log
+from navcore.checks.imu_suspects import (
+    force_reason,
+    outlier_warnings,
+    still_warnings,
+    turn_warnings,
+    upward_remedy,
+)
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
@@ -41,9 +48,14 @@ def check_imu(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     record = read_imu(path, column_map=column_map)
     kind = "recorded IMU, PSINS" if record.lat is not None else "recorded IMU, CSV"
     details = _details(record)
-    return FileReport(
-        str(path), kind, details, tuple(_text(details)), (*record.warnings, *_warnings(details))
+    warnings = (
+        *record.warnings,
+        *_warnings(details),
+        *turn_warnings(details["mean_turn_size_dph"]),
+        *still_warnings(record),
+        *outlier_warnings(record),
     )
+    return FileReport(str(path), kind, details, tuple(_text(details)), warnings)
 
 
 IMU_CHECKER = Checker(recognises, check_imu)
@@ -130,8 +142,9 @@ def _warnings(details: dict[str, Any]) -> list[str]:
         warnings.append(
             Text(
                 "the mean specific force is {size:g} m/s², far from gravity: wrong units, "
-                "scale, or not at rest",
+                "scale, or not at rest{reason}",
                 size=size,
+                reason=force_reason(size),
             )
         )
     if up == "-z":
@@ -139,9 +152,10 @@ def _warnings(details: dict[str, Any]) -> list[str]:
     elif up != "+z":
         warnings.append(
             Text(
-                "the {up} axis looks like up: a run needs x right, y forward, z up (or frd), "
-                "turn the columns",
+                "the {up} axis looks like up: a run needs to know where x, y and z point, such as "
+                'imu.axes = "{axes}"',
                 up=up,
+                axes=upward_remedy(up),
             )
         )
     if details["rate_hz"] < _SLOWEST_HZ:

@@ -18,6 +18,7 @@ LARGEST_SPEED_SHARE = 0.25
 """... and a speed over ground that differs from the track's by more of the larger one."""
 _NEAR = 15.0 * DEG
 _SLOWEST_MPS = 1.0
+_STILL_MPS = 1e-6
 _LEG_S = 10.0
 _FEWEST = 3
 _RATIO_SLIP = 0.08
@@ -39,14 +40,17 @@ def course_warnings(recording: Recording) -> list[str]:
     recording : Recording
         With positions or velocity under way; else nothing is said.
     """
-    track, velocity = _track(recording.position), _velocity(recording.velocity)
+    legs, velocity = _track(recording.position), _velocity(recording.velocity)
+    track = None if legs is None else _moving(legs, np.ones(legs.time_s.size, dtype=bool))
     words: list[str] = []
+    if legs is not None and velocity is not None and recording.velocity is not None:
+        # Positions in radians hardly move: legs of any speed count.
+        words += _speeds(recording.velocity, legs)
     if track is not None and velocity is not None and recording.velocity is not None:
         words += _angles(
             Text("the course over ground"), recording.velocity.time_s,
             np.arctan2(*recording.velocity.values.T), track, LARGEST_COURSE_ERROR,
         )  # fmt: skip
-        words += _speeds(recording.velocity, track)
     way = track or velocity
     if recording.heading is not None and way is not None:
         heading = recording.heading
@@ -56,7 +60,7 @@ def course_warnings(recording: Recording) -> list[str]:
 
 
 def _track(position: Series | None) -> _Way | None:
-    """Velocity of legs of 10 s between positions that share none of the gaps."""
+    """Velocity of legs of 10 s between positions that share none of the gaps, at any speed."""
     if position is None or position.time_s.size < _FEWEST:
         return None
     time_s = position.time_s
@@ -69,7 +73,8 @@ def _track(position: Series | None) -> _Way | None:
         return None
     meridian, prime_vertical = WGS84.radii(float(np.median(lat)))
     east, north = np.diff(lon) * prime_vertical * np.cos(lat[:-1]) / steps, np.diff(lat) * meridian / steps
-    return _moving(_Way(time_s[starts][:-1] + 0.5 * steps, east, north), steps < 3.0 * leg_s)
+    whole = steps < 3.0 * leg_s
+    return _Way(*(values[whole] for values in (time_s[starts][:-1] + 0.5 * steps, east, north)))
 
 
 def _velocity(velocity: Series | None) -> _Way | None:
@@ -106,11 +111,13 @@ def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: _Way, most: f
     near, close = beside
     told, course = angle[near], np.arctan2(way.east, way.north)[close]
     off = _off(told, course)
-    if off <= most:
-        return []
     degrees, turned = np.rad2deg(angle % (2.0 * np.pi)), np.rad2deg(told % (2.0 * np.pi))
+    radians = degrees.max() <= 2.0 * np.pi + 0.01
+    plainly_radians = radians and off > _NEAR and _off(turned, course) < 0.2 * off
+    if off <= most and not plainly_radians:
+        return []
     slips = (
-        (Text("radians taken for degrees"), degrees.max() <= 2.0 * np.pi + 0.01, turned, course),
+        (Text("radians taken for degrees"), radians, turned, course),
         (Text("the wrong sign of the angle or of the longitude"), True, -told, course),
         (Text("the wrong sign (hemisphere) of the latitude"), True, told, np.pi - course),
         (Text("the opposite direction"), True, told + np.pi, course),
@@ -153,7 +160,7 @@ def _speeds(velocity: Series, track: _Way) -> list[str]:
     moved = float(np.median(np.hypot(track.east, track.north)[close]))
     if abs(given - moved) <= max(_SLOWEST_MPS, LARGEST_SPEED_SHARE * max(given, moved)):
         return []
-    slip = slip_of(given / moved, _SLIPS, _RATIO_SLIP) or Text("a wrong unit or scale")
+    slip = slip_of(given / max(moved, _STILL_MPS), _SLIPS, _RATIO_SLIP) or Text("a wrong unit or scale")
     return [
         Text(
             "the speed over ground (median {given:.1f} kn, {source}) is not that of the positions "

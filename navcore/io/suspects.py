@@ -1,0 +1,95 @@
+"""Readings that an instrument cannot mean: values that stand still, and spikes alone or in runs."""
+
+import numpy as np
+
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG
+from navcore.io.series import Recording, Series, utc_text
+
+LONGEST_STILL_S = 300.0
+"""A value that stays the very same for longer is stuck,"""
+STILL_RATIO = 10.0
+"""... if it never did for a tenth of that time otherwise: a coarse instrument often repeats itself."""
+_LARGEST_STEP = {"water": 2.5, "ground": 2.5, "velocity": 5.0, "heading": 20.0 * DEG}
+"""m/s and rad from one sample to the next, which no ship does; also the size of a spike."""
+_LONGEST_SPIKE = 15
+"""Samples; a longer run is no spike."""
+_NAMES = {
+    "water": Text("speed through water"),
+    "ground": Text("speed over ground along axes"),
+    "velocity": Text("velocity over ground (E, N)"),
+    "heading": "heading",
+}
+
+
+def suspect_warnings(recording: Recording) -> list[str]:
+    """Say which readings of speeds and heading are stuck or spikes, when, and what to do about them."""
+    words: list[str] = []
+    for name, series in recording.quantities().items():
+        if name not in _LARGEST_STEP or np.count_nonzero(series.valid) < 3 * _LONGEST_SPIKE:
+            continue
+        kept = np.flatnonzero(series.valid)
+        values = series.values[kept]
+        if name == "heading":
+            values = np.unwrap(values, axis=0)
+        spikes = kept[_spikes(values, _LARGEST_STEP[name])]
+        if spikes.size:
+            words.append(
+                Text.plural(
+                    "{name}: {count} sample at {when} is far from its neighbours: leave the row out",
+                    "{name}: {count} samples from {when} are far from their neighbours: leave the rows out",
+                    name=_NAMES[name],
+                    count=int(spikes.size),
+                    when=_when(series, spikes[0], spikes[-1]),
+                )
+            )
+        begin, end = _still(series.time_s[kept], values)
+        if end > begin:
+            words.append(
+                Text(
+                    "{name}: the very same value from {when}: stuck? Leave these rows out",
+                    name=_NAMES[name],
+                    when=_when(series, kept[begin], kept[end]),
+                )
+            )
+    return words
+
+
+def _when(series: Series, first: int, last: int) -> str:
+    ends = [utc_text(series.time_s[i]) if series.dated else f"{series.time_s[i]:g} s" for i in (first, last)]
+    return ends[0] if first == last else Text("{first} to {last}", first=ends[0], last=ends[1])
+
+
+def _spikes(values: np.ndarray, largest: float) -> np.ndarray:
+    """Places of the samples, shape (n, k), that lie between a step away and a step back."""
+    if not (np.abs(np.diff(values, axis=0)) > largest).any():
+        return np.empty(0, dtype=int)
+    from scipy.ndimage import median_filter
+
+    middle = median_filter(values, size=(4 * _LONGEST_SPIKE + 1, 1), mode="nearest")
+    far = (np.abs(values - middle) > largest).any(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], far, [False]])))
+    runs = edges.reshape(-1, 2)
+    steps = np.abs(np.diff(values, axis=0)).max(axis=1)
+    found = [
+        np.arange(begin, end)
+        for begin, end in runs
+        if end - begin <= _LONGEST_SPIKE
+        and (begin == 0 or steps[begin - 1] > largest)
+        and (end == len(values) or steps[end - 1] > largest)
+    ]
+    return np.concatenate(found) if found else np.empty(0, dtype=int)
+
+
+def _still(time_s: np.ndarray, values: np.ndarray) -> tuple[int, int]:
+    """First and last sample of the longest time without any change; both 0 where it is not remarkable."""
+    changes = np.concatenate([[0], 1 + np.flatnonzero((np.diff(values, axis=0) != 0.0).any(axis=1))])
+    ends = np.append(changes[1:], len(values)) - 1
+    spans = time_s[ends] - time_s[changes]
+    longest = int(np.argmax(spans))
+    second = float(np.delete(spans, longest).max(initial=0.0))
+    if changes.size < 2 or spans[longest] < LONGEST_STILL_S or spans[longest] < STILL_RATIO * second:
+        return 0, 0
+    if not np.any(values[changes[longest]]):
+        return 0, 0  # a ship that lies still
+    return int(changes[longest]), int(ends[longest])
