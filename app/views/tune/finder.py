@@ -18,7 +18,7 @@ from schuler_bench.views.tune.fronts import COMMAND, nearest, setting_text
 ACROSS, UP = "across", "up"
 FIND, STOP = Text("Find the fronts"), Text("Stop finding")
 _OLD = Text("of an earlier scenario: find the fronts again")
-_SO_FAR = Text("the search was stopped: the fronts so far")
+_SO_FAR = Text("The search was stopped: these are the fronts so far.")
 _CLICK = Text("Click a point to put it into the method; undo takes it back.")
 
 
@@ -64,12 +64,10 @@ class FrontsPanel:
 
     @property
     def note(self) -> str:
-        """Note that the fronts are of an earlier scenario, or not complete; empty otherwise."""
-        task, found = self._fronts.asked, self.found
-        if found is None or task is None:
-            return ""
-        old = not task.fits(self.session.scenario)
-        return _OLD if old else _SO_FAR if found.stopped else ""
+        """Note that the fronts are of an earlier scenario; empty while they fit."""
+        task = self._fronts.asked
+        old = self.found is not None and task is not None and not task.fits(self.session.scenario)
+        return _OLD if old else ""
 
     @property
     def method(self) -> int:
@@ -88,7 +86,7 @@ class FrontsPanel:
                 box.value = label
         html = notices.note(self._fronts.words, "warning")
         if not html and self.found is not None:
-            html = notices.small(_CLICK)
+            html = notices.note([_SO_FAR] if self.found.stopped else [], "warning") + notices.small(_CLICK)
         show_html(
             self._words, Text('<div class="sb-wide">{html}</div>', html=html) if chosen and html else ""
         )
