@@ -12,7 +12,6 @@ from navcore.foundation.errors import InputError
 from navcore.scenario.file import load, scenario_hash
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
-from navcore.sensors.base import ReferenceErrors
 
 if TYPE_CHECKING:
     from navcore.engine.strapdown_environment import StrapdownEnvironment
@@ -37,7 +36,7 @@ def check_scenario(source: str | Path) -> FileReport:
         raise error.located(str(source)) from None
     warnings = list(inputs.warnings)
     for method in scenario.method:
-        warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method, inputs.reference)]
+        warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method, inputs)]
     return FileReport(
         str(source),
         f"scenario, schema {scenario.schema_version}",
@@ -58,12 +57,13 @@ def _environment(scenario: Scenario) -> Environment | StrapdownEnvironment:
     return strapdown_environment(scenario)
 
 
-def _warnings(scenario: Scenario, method: Method, log: ReferenceErrors) -> list[str]:
+def _warnings(scenario: Scenario, method: Method, inputs: Environment | StrapdownEnvironment) -> list[str]:
     if method.undamped:
         return []
     network = network_of(scenario, method)
     law_step_s = scenario.sampling.law_step_s if scenario.strapdown else scenario.run.step_s
-    stability = stability_of(scenario, method, law_step_s, log, network)
+    truth = inputs.truth_half if isinstance(inputs, Environment) else inputs.truth
+    stability = stability_of(scenario, method, law_step_s, inputs.reference, truth, network)
     return list(dict.fromkeys((*network.warnings, *stability.warnings)))
 
 

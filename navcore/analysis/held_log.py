@@ -14,7 +14,7 @@ import numpy as np
 
 from navcore.analysis.loop import closed_loop_poles
 from navcore.analysis.response import matrix_exponential
-from navcore.analysis.whole_system import (
+from navcore.analysis.whole_matrix import (
     DV_E,
     DV_N,
     LATITUDE,
@@ -22,12 +22,12 @@ from navcore.analysis.whole_system import (
     PHI_N,
     PHI_U,
     STATES,
-    duration,
     feedback_gains,
     free_matrix,
     inputs_of_law,
     up_rate,
 )
+from navcore.analysis.whole_system import duration
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text

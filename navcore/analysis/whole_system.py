@@ -2,8 +2,7 @@
 
 One level channel (`navcore.analysis.loop`) says nothing about the slow modes. A horizontal damping network
 moves the 24 h mode of the six-state error model, and most networks let it grow (theory.md 10). The model is
-the one of theory.md 2 at rest, without longitude, with the network's states in both channels. Time is
-measured in 1/omega_s and velocity in g/omega_s, so that all elements of the matrix lie near 1.
+that of `navcore.analysis.whole_matrix`.
 """
 
 import math
@@ -13,20 +12,20 @@ from functools import lru_cache
 import numpy as np
 
 from navcore.analysis.loop import closed_loop_poles
+from navcore.analysis.whole_matrix import AT_REST, Course, system_matrix
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.networks.azimuth_loop import AzimuthChannel, AzimuthGains
 from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.roots import sorted_roots
-from navcore.networks.state_space import state_space, state_spaces
 
-DV_E, DV_N, LATITUDE, PHI_E, PHI_N, PHI_U = range(6)
-STATES = 6
 EARTH_MODE, SCHULER_MODE, NETWORK_MODE = "24 h", "Schuler-Foucault", "network"
 _DAY = 86400.0
 _STANDS = 1e-7
 """Growth over omega_s that counts as none: rounding moves a mode of two equal eigenvalues by so much."""
+_MORE, _FASTER = 1.5, 2.0
+"""Growth under way that counts: so many times that at rest, and the rate at which the latitude changes."""
 
 
 @dataclass(frozen=True)
@@ -103,136 +102,6 @@ class WholeSystem:
         return 1.0 / self.earth_growth if self.earth_growth != 0.0 else math.inf
 
 
-@dataclass(frozen=True, eq=False)
-class LawForm:
-    """The damping law of one channel as it acts on the velocity error dV, in normalised time.
-
-    c = C z + D dV is the correction of the platform's velocity and a = E z - k1 dV the feedback into the
-    velocity, with z' = A z + B dV.
-    """
-
-    A: np.ndarray
-    B: np.ndarray
-    C: np.ndarray
-    D: float
-    E: np.ndarray
-    k1: float
-
-
-def law_form(network: LinearNetwork) -> LawForm:
-    """State-space form of the damping law of a network as it acts (`navcore.damping.base.Damping.acting`)."""
-    poles = network.poles / network.omega_s
-    if network.feedback_p is not None:
-        system, second = state_spaces([network.num_p, network.feedback_p], poles)
-        return LawForm(system.A, system.B, system.C, system.D - 1.0, -second.C, second.D)
-    if network.realisation != "network":
-        k1, k2, k3 = feedback_gains(network)
-        return LawForm(np.zeros((1, 1)), np.array([k3]), np.ones(1), k2, np.zeros(1), k1)
-    system = state_space(network.num_p, poles)
-    return LawForm(system.A, system.B, system.C, system.D - 1.0, np.zeros(len(system.B)), 0.0)
-
-
-def feedback_gains(network: LinearNetwork) -> tuple[float, float, float]:
-    """K1/omega_s, K2, K3/omega_s of H = ((1 + K2) p + K3)/(p + K1), p = s/omega_s (theory.md 3.1)."""
-    num, den = np.zeros(2), np.zeros(2)
-    num[2 - len(network.num_p) :] = network.num_p
-    den[2 - len(network.den_p) :] = network.den_p
-    if len(network.den_p) == 1:  # a common root at zero was removed
-        return 0.0, float(num[1]) - 1.0, 0.0
-    return float(den[1]), float(num[0]) - 1.0, float(num[1])
-
-
-def free_matrix(lat: float, omega_s: float, earth: Earth = SPHERE, height: float = 0.0) -> np.ndarray:
-    """System matrix of the undamped model at rest in normalised units, shape (6, 6) (theory.md 2).
-
-    States dV_E, dV_N over g/omega_s, dL, phi_E, phi_N, phi_U.
-
-    Parameters
-    ----------
-    lat : float
-        rad.
-    omega_s : float
-        Unit of the eigenvalues, rad/s.
-    earth : Earth
-        WGS-84 or the sphere.
-    height : float
-        m.
-    """
-    east, north = _stiffness(lat, omega_s, earth, height)
-    wz, wy = EARTH_RATE / omega_s * math.sin(lat), EARTH_RATE / omega_s * math.cos(lat)
-    f = np.zeros((STATES, STATES))
-    f[DV_E, DV_N], f[DV_E, PHI_N] = 2.0 * wz, -1.0
-    f[DV_N, DV_E], f[DV_N, PHI_E] = -2.0 * wz, 1.0
-    f[LATITUDE, DV_N] = north
-    f[PHI_E, DV_N], f[PHI_E, PHI_N], f[PHI_E, PHI_U] = -north, wz, -wy
-    f[PHI_N, DV_E], f[PHI_N, LATITUDE], f[PHI_N, PHI_E] = east, -wz, -wz
-    f[PHI_U, DV_E], f[PHI_U, LATITUDE], f[PHI_U, PHI_E] = east * math.tan(lat), wy, wy
-    return f
-
-
-def inputs_of_law(lat: float, omega_s: float, earth: Earth = SPHERE, height: float = 0.0) -> np.ndarray:
-    """How c_E, c_N, a_E, a_N act on the six states, shape (6, 4)."""
-    east, north = _stiffness(lat, omega_s, earth, height)
-    b = np.zeros((STATES, 4))
-    b[PHI_N, 0], b[PHI_E, 1] = east, -north
-    b[DV_E, 2] = b[DV_N, 3] = 1.0
-    return b
-
-
-def _stiffness(lat: float, omega_s: float, earth: Earth, height: float) -> tuple[float, float]:
-    """g/((N + h) omega_s^2) and g/((M + h) omega_s^2): 1 on the sphere whose omega_s is the unit."""
-    m, n = earth.radii(lat)
-    scale = earth.gravity(lat, height) / omega_s**2
-    return scale / (n + height), scale / (m + height)
-
-
-def system_matrix(
-    network: LinearNetwork,
-    lat: float,
-    earth: Earth = SPHERE,
-    height: float = 0.0,
-    azimuth: AzimuthChannel | None = None,
-) -> np.ndarray:
-    """System matrix with the law's states of the east, the north and the azimuth channel.
-
-    Shape (6 + 2 n + m, 6 + 2 n + m) for n states of H(s) and m of Y(s).
-    """
-    law = law_form(network)
-    n = len(law.B)
-    act = inputs_of_law(lat, network.omega_s, earth, height)
-    compass = isinstance(azimuth, AzimuthGains)
-    m = 0 if azimuth is None else 1 if compass else azimuth.order
-    f = np.zeros((STATES + 2 * n + m, STATES + 2 * n + m))
-    f[:STATES, :STATES] = free_matrix(lat, network.omega_s, earth, height)
-    for channel in (DV_E,) if compass else (DV_E, DV_N):
-        z = slice(STATES + channel * n, STATES + (channel + 1) * n)
-        f[:STATES, channel] += act[:, channel] * law.D - act[:, 2 + channel] * law.k1
-        f[:STATES, z] = np.outer(act[:, channel], law.C) + np.outer(act[:, 2 + channel], law.E)
-        f[z, channel], f[z, z] = law.B, law.A
-    if isinstance(azimuth, AzimuthGains):
-        f = np.delete(np.delete(f, north := range(STATES + n, STATES + 2 * n), 0), north, 1)
-        rate = network.omega_s
-        f[DV_N, DV_N] -= azimuth.k1 / rate
-        f[PHI_E, DV_N] += act[PHI_E, 1] * azimuth.k2
-        f[PHI_U, -1], f[-1, -1] = 1.0, -azimuth.k4 / rate
-        f[-1, DV_N] = azimuth.k3 * earth.gravity(lat, height) / (rate**3 * EARTH_RATE * math.cos(lat))
-    elif azimuth is not None:
-        y, rate = law_form(azimuth), azimuth.omega_s / network.omega_s
-        up, z = up_rate(lat, network.omega_s, earth, height), slice(STATES + 2 * n, None)
-        f[PHI_U, :STATES] += y.D * up
-        f[PHI_U, z] = y.C
-        f[z, :STATES], f[z, z] = rate * np.outer(y.B, up), rate * y.A
-    return f
-
-
-def up_rate(lat: float, omega_s: float, earth: Earth = SPHERE, height: float = 0.0) -> np.ndarray:
-    """Error of the computed rate about the vertical by the six states, shape (6,); omega_Ur has none."""
-    row = np.zeros(STATES)
-    row[DV_E] = _stiffness(lat, omega_s, earth, height)[0] * math.tan(lat)
-    row[LATITUDE] = EARTH_RATE / omega_s * math.cos(lat)
-    return row
-
-
 @lru_cache(maxsize=256)
 def whole_system(
     network: LinearNetwork,
@@ -270,6 +139,32 @@ def whole_system(
         h_slope=network.h_slope,
         warnings=tuple(_warnings(growing, network, lat)),
     )
+
+
+def growth_under_way(
+    network: LinearNetwork,
+    lat: float,
+    course: Course,
+    earth: Earth = SPHERE,
+    height: float = 0.0,
+    azimuth: AzimuthChannel | None = None,
+) -> float:
+    """Growth rate that a velocity gives the whole system, 1/s; 0 where it grows as at rest, or hardly.
+
+    The velocity and the latitude are taken to stay: what grows more slowly than the latitude changes is
+    not judged (theory.md 10).
+
+    Parameters
+    ----------
+    network, lat, earth, height, azimuth
+        As of `whole_system`.
+    course : Course
+        Velocity, and whether the log is turned by the computed heading.
+    """
+    matrices = (system_matrix(network, lat, earth, height, azimuth, c) for c in (course, AT_REST))
+    growth, at_rest = (float(np.max(np.linalg.eigvals(f).real)) * network.omega_s for f in matrices)
+    changes = math.hypot(course.v_e, course.v_n) / earth.radii(lat)[0] * max(1.0, abs(math.tan(lat)))
+    return growth if growth > max(_MORE * at_rest, _FASTER * changes, _STANDS * network.omega_s) else 0.0
 
 
 def growth_over_latitude(

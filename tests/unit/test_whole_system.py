@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 from navcore.analysis.held_log import held_log, period_map
+from navcore.analysis.whole_matrix import feedback_gains, inputs_of_law, system_matrix
 from navcore.analysis.whole_system import (
     EARTH_MODE,
     SCHULER_MODE,
     _nearest,
     duration,
-    feedback_gains,
     growth_over_latitude,
-    inputs_of_law,
-    system_matrix,
     whole_system,
 )
 from navcore.damping import KINDS

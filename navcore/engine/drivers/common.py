@@ -1,7 +1,7 @@
 """Steps that every fidelity takes alike for a method: its network and law, the log it sees, its result."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,13 +9,13 @@ import numpy as np
 from navcore.analysis import Loop, analyse
 from navcore.analysis.filter_loop import filter_loop
 from navcore.analysis.held_log import held_log
-from navcore.analysis.whole_system import WholeSystem, whole_system
+from navcore.analysis.whole_system import Course, WholeSystem, duration, growth_under_way, whole_system
 from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, spans_from
-from navcore.motion.truth import COLUMNS
+from navcore.motion.truth import COLUMNS, VE, VN, Truth
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -84,7 +84,12 @@ class Stability:
 
 
 def stability_of(
-    scenario: Scenario, method: Method, law_step_s: float, log: ReferenceErrors, network: LinearNetwork
+    scenario: Scenario,
+    method: Method,
+    law_step_s: float,
+    log: ReferenceErrors,
+    truth: Truth,
+    network: LinearNetwork,
 ) -> Stability:
     """Analyse a method at the site.
 
@@ -97,7 +102,9 @@ def stability_of(
     law_step_s : float
         Time between two calls of the law, s.
     log : ReferenceErrors
-        Gives the log's period.
+        Gives the log's period, and whether the computed heading turns it.
+    truth : Truth
+        Gives the mean velocity.
     network : LinearNetwork
         H(s) to be judged.
     """
@@ -116,7 +123,26 @@ def stability_of(
         coupled = scenario.run.fidelity != "channel"
         sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth, coupled, azimuth)
         warnings, growth = (*warnings, *sampled.warnings), sampled.growth_per_s
+        if coupled:
+            v_e, v_n = (float(np.mean(truth.column(axis))) for axis in (VE, VN))
+            course = Course(v_e, v_n, kind.referenced and log.body_frame)
+            place = scenario.earth, scenario.site.height_m
+            warnings += tuple(_under_way(course, growth_under_way(acting, lat, course, *place, azimuth)))
     return Stability(loop, whole, warnings, growth)
+
+
+def _under_way(course: Course, growth: float) -> Iterator[str]:
+    """Yield a warning of a growth (1/s) that the velocity gives the whole system."""
+    if growth > 0.0:
+        text = Text(
+            "whole system under way: at the mean velocity, {speed:.3g} m/s on course {course:.0f}°, the "
+            "errors grow, e-folding time {growth}",
+            speed=math.hypot(course.v_e, course.v_n),
+            course=math.degrees(math.atan2(course.v_e, course.v_n)) % 360.0,
+            growth=duration(1.0 / growth),
+        )
+        why = Text("a log in the ship's axes is turned by the computed heading, and moves it")
+        yield Text.joined("; ", (text, why)) if course.turned else text
 
 
 def _log_period_s(scenario: Scenario, log: ReferenceErrors, law_step_s: float) -> float:

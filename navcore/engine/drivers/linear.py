@@ -139,7 +139,7 @@ def _run_method(
     return method_run(
         method,
         network_of(scenario, method),
-        partial(stability_of, scenario, method, step_s, env.reference),
+        partial(stability_of, scenario, method, step_s, env.reference, env.truth_half),
         run.recorder,
         step_s,
         status,

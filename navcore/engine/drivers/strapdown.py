@@ -138,7 +138,7 @@ def _finish(
     return method_run(
         method,
         network_of(scenario, method),
-        partial(stability_of, scenario, method, env.sampling.law_step_s, env.reference),
+        partial(stability_of, scenario, method, env.sampling.law_step_s, env.reference, env.truth),
         run.recorder,
         run.settings.record_step_s,
         status,
