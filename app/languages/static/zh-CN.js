@@ -103,8 +103,6 @@ window.schuler.words = {
   "camera": "视角",
   "Software WebGL rendering detected": "检测到软件 WebGL 渲染",
   "; 3D drawn in software": "；三维以软件绘制",
-  "No 3D view: this browser has no WebGL. Controls, plots and tables work.": "没有三维视图：此浏览器不提供 WebGL。控件、曲线图和表格可以使用。",
-  "The 3D view is lost: the browser has taken its WebGL away. Controls, plots and tables work. Load the page again to get it back.": "三维视图已丢失：浏览器收回了 WebGL。控件、曲线图和表格可以使用。重新加载页面即可恢复。",
   "legend {0}": "图例 {0}",
   "{0} hours": "{0} 小时",
   "Guided tour, six steps": "六步导览",
