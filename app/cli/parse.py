@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.cli.adapt import AdaptCommand
 from schuler_bench.cli.bench import BenchCommand
 from schuler_bench.cli.budget import BudgetCommand
 from schuler_bench.cli.check import CheckCommand
@@ -36,6 +37,7 @@ _COMMANDS = {
     "budget": BudgetCommand,
     "tune": TuneCommand,
     "pareto": ParetoCommand,
+    "adapt": AdaptCommand,
     "design": DesignCommand,
     "study": StudyCommand,
     "bench": BenchCommand,

@@ -31,7 +31,7 @@ def presets() -> dict[str, Path]:
     dict
         Name -> path of its TOML file, sorted by name.
     """
-    return {path.stem: path for path in sorted(asset_path("presets").glob("*.toml"))}
+    return {path.stem: path for path in sorted(asset_path("presets").glob("*.toml"), key=lambda p: p.stem)}
 
 
 def load(source: str, overrides: Iterable[str] = ()) -> Scenario:

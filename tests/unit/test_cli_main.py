@@ -27,7 +27,7 @@ def run(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "{serve, run, network, presets, check, budget, tune, pareto, design, study, bench}"),
+        ([], "{serve, run, network, presets, check, budget, tune, pareto, adapt, design, study, bench}"),
         (["simulate"], "bench}, not 'simulate'"),
         (["run"], "run needs SCENARIO"),
         (["run", "zha-fast", "--fromat", "csv"], "run does not know --fromat; perhaps --format"),
