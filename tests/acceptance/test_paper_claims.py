@@ -15,7 +15,16 @@ from navcore.motion.truth import VE, VN
 from navcore.scenario.file import load
 from tools.papers import zha, zha_drive, zha_roll
 from tools.papers.liu_fig_7 import FIGURE_7
-from tools.papers.liu_switching import fig_7, overshoot, switched
+from tools.papers.liu_fig_11 import growth_with
+from tools.papers.liu_switching import (
+    NOVEL,
+    altered_ratio,
+    fig_7,
+    overshoot,
+    switched,
+    without_changes,
+    without_standing,
+)
 from tools.papers.markdown import check
 from tools.papers.runs import Runs, method
 from tools.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
@@ -67,6 +76,17 @@ def test_liu_figure_7_the_ramp_alone_softens_nothing_and_lius_recursion_does(run
 @pytest.mark.parametrize("switching", ["keep", "bumpless"])
 def test_liu_figure_7_a_filter_that_is_not_cleared_makes_no_overshoot(runs, switching):
     assert overshoot(switched(runs, switching)) < 1e-4
+
+
+def test_liu_table_1_the_standing_error_and_not_the_changes_sets_the_ratio(runs):
+    changes, standing = (
+        altered_ratio(runs, change, NOVEL, "yaw_rate") for change in (without_changes, without_standing)
+    )
+    assert changes < 0.6 and 0.73 < standing < 0.98
+
+
+def test_liu_figure_11_a_gyro_bias_makes_the_free_error_grow(runs):
+    assert growth_with(runs, gyro_bias_dph=(0.001, 0.001, 0.001)) > 1.5
 
 
 def test_sun_the_setting_is_the_papers(runs):

@@ -111,6 +111,12 @@ def _base(overrides: Iterable[str], **blocks: Any) -> Scenario:
     return scenario_of(PRESET, overrides, method=[*methods, bridge], **blocks)
 
 
+def without_standing(scenario: Scenario) -> Scenario:
+    """The same without the standing error of the log."""
+    reference = scenario.reference.model_copy(update={"bias_mps": (0.0, 0.0)})
+    return scenario.model_copy(update={"reference": reference})
+
+
 def without_changes(scenario: Scenario) -> Scenario:
     """The same without any change of the log's error."""
     return _with_events(scenario, [])
@@ -183,6 +189,22 @@ def ratios(runs: Runs, case: str, quantity: Quantity, ours: str, than: str) -> n
 def ratio(runs: Runs, case: str, quantity: Quantity, ours: str, than: str) -> float:
     """Geometric mean over the seeds of one method's error over another's."""
     return float(np.exp(np.mean(np.log(ratios(runs, case, quantity, ours, than)))))
+
+
+def altered_ratio(runs: Runs, change: Callable[[Scenario], Scenario], ours: str, than: str) -> float:
+    """Mean over the seeds of one method's position RMS over another's at sea, in an altered scenario."""
+
+    def make() -> float:
+        found = []
+        for seed in SEEDS:
+            scenario = change(sea(seed))
+            methods = {one.name: one for one in scenario.method}
+            pair = scenario.model_copy(update={"method": (methods[ours], methods[than])})
+            mine, other = errors(simulate(pair))[:, QUANTITIES.index("position")]
+            found.append(mine / other)
+        return float(np.mean(found))
+
+    return runs.keep(("liu-switching", change.__name__, ours, than), make)
 
 
 def paired(run: Run, without: Run) -> np.ndarray:
