@@ -27,7 +27,17 @@ from tools.papers.liu_switching import (
 )
 from tools.papers.markdown import check
 from tools.papers.runs import Runs, method
-from tools.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
+from tools.papers.sun_ship import (
+    ANGLES,
+    EQ_8_GYROS,
+    LARGE_SCALE,
+    METHODS,
+    NO_SCALE,
+    SHIP,
+    SMALL_ERRORS,
+    measured,
+    over_conventional,
+)
 from tools.papers.sun_vehicle import VEHICLE
 
 
@@ -117,6 +127,14 @@ def test_sun_small_initial_errors_do_not_change_that_but_better_gyros_do(runs):
     assert np.mean(measured(runs, EQ_8_GYROS)["xi"]) > 0.25
     for angle in ("pitch", "heading"):
         assert np.mean(over_conventional(runs, "overshoot", angle, EQ_8_GYROS)) > 1.0
+
+
+def test_sun_claims_7_and_9_hang_on_the_scale_error_of_the_log(runs):
+    def largest(variant: str) -> float:
+        return max(float(np.mean(over_conventional(runs, "overshoot", angle, variant))) for angle in ANGLES)
+
+    assert largest(EQ_8_GYROS) > 1.5
+    assert largest(NO_SCALE) < 1.0 and largest(LARGE_SCALE) < 1.0
 
 
 def test_sun_every_method_finishes(runs):

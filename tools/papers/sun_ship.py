@@ -42,6 +42,12 @@ VARIANTS: dict[str, tuple[str, ...]] = {
         QUIET,
         "reference.scale_ppm=0",
     ),
+    "the same, log with a scale error of 0.1": (
+        SMALL,
+        "imu.gyro_bias_dph=[0.006,0.006,0.001]",
+        QUIET,
+        "reference.scale_ppm=100000",
+    ),
     "initial errors 0.1', 0.1', 1', gyros 0.001 deg/h, 0.0006 deg/sqrt(h)": (
         SMALL,
         "imu.gyro_bias_dph=[0.001,0.001,0.001]",
@@ -58,7 +64,9 @@ VARIANTS: dict[str, tuple[str, ...]] = {
     "as printed, Sun's pole2 with (18) exact": ('method.2.network={id="pole2",variant="exact"}',),
 }
 """Overrides of the preset. The gyros' random drift is in deg/sqrt(h); the printed one is 0.006."""
-PRINTED, SMALL_ERRORS, _, EQ_8_GYROS, NO_SCALE, GOOD_GYROS, GOOD_GYROS_HARD, HARD, POLE2, _ = VARIANTS
+PRINTED, SMALL_ERRORS, _, EQ_8_GYROS, NO_SCALE, LARGE_SCALE, GOOD_GYROS, GOOD_GYROS_HARD, HARD, POLE2, _ = (
+    VARIANTS
+)
 
 
 def errors(runs: Runs, name: str, *overrides: str) -> np.ndarray:
@@ -123,6 +131,7 @@ def _adaptive_claim(angle: str, variant: str = PRINTED, why: str = "") -> Claim:
         facts={
             "xi": lambda runs: float(np.mean(measured(runs, EQ_8_GYROS)["xi"])),
             "ideal": lambda runs: float(np.mean(over_conventional(runs, "overshoot", angle, NO_SCALE))),
+            "large": lambda runs: float(np.mean(over_conventional(runs, "overshoot", angle, LARGE_SCALE))),
         }
         if why
         else {},
@@ -238,7 +247,8 @@ SHIP = Exhibit(
                 EQ_8_GYROS,
                 "with gyros good enough for the law to damp (mean xi {xi}) the manoeuvre comes in through "
                 "the log's scale error as it does in every damped loop: claims 1 and 3 are reversed. "
-                "Without the scale error the ratio is {ideal}."
+                "This hangs on the scale error k, which Sun does not print and which is 0.02 here: the ratio "
+                "is {ideal} with k = 0 and {large} with k = 0.1."
                 if angle != "roll"
                 else "",
             )
