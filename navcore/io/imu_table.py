@@ -192,7 +192,7 @@ def _factors(columns: list[ImuColumn], raw: np.ndarray, source: str) -> tuple[np
     if unsure:
         needed = ", ".join(UNITS[DIMENSIONS[unsure[0].kind]])
         allowed = Text(
-            "names no unit: name one, as in gyro_x (deg/s); known: {needed}; columns without: {columns}",
+            "names no unit: name one, as in gyro_x (rad/s); known: {needed}; columns without: {columns}",
             needed=needed,
             columns=", ".join(column.name for column in unsure),
         )

@@ -45,7 +45,7 @@ class Imu(_Errors):
         description=Text(
             "Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
             "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (means), or dax_rad ... dvz_mps "
-            "(increments), or names such as GYRO X [deg/s]. Alignment and navigation take its samples one "
+            "(increments), or names such as GYRO X [rad/s]. Alignment and navigation take its samples one "
             "after the other."
         ),
         json_schema_extra={"label": Text("IMU file")},
