@@ -13,7 +13,7 @@ from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tools.papers import liu_fig_11, liu_switching, sun_vehicle
 from tools.papers.runs import Runs, scenario_of
-from tools.papers.zha import LABORATORY
+from tools.papers.zha_roll import LAB_TILT, LABORATORY
 
 
 def content(scenario: Scenario) -> dict[str, Any]:
@@ -56,7 +56,7 @@ def test_sun_vehicle_is_the_scenario_of_section_5_2(unrun: Runs) -> None:
 
 
 def test_zha_laboratory_is_the_scenario_of_figure_5() -> None:
-    assert content(load("zha-laboratory")) == content(scenario_of("zha-external", LABORATORY))
+    assert content(load("zha-laboratory")) == content(scenario_of("zha-external", (*LABORATORY, LAB_TILT)))
 
 
 @pytest.mark.parametrize("drive", range(2, 7))
