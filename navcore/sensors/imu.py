@@ -1,7 +1,9 @@
 """The inertial measurement unit: its errors as a scenario gives them, and their effect along a motion."""
 
+import weakref
 from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextvars import copy_context
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -10,6 +12,7 @@ from pydantic import Field, create_model
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import FileName, choice, quantity
+from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.motion.truth import Truth
 from navcore.sensors.base import SensorErrors
@@ -147,7 +150,7 @@ def imu_errors(
     level = level_body or all(model.perfect for model in models)
     # Gyros, accelerometers and attitude at the same time: of a new seed this is a fifth of the whole run.
     with ThreadPoolExecutor(2) as pool:
-        turning = pool.submit(_level if level else _mean_attitude, values, count)
+        turning = pool.submit(copy_context().run, _attitude, truth_half, count, level)
         errors = [
             pool.submit(_navigation_errors, model, turning, signal[i], coupled[i], clock)
             for i, model in enumerate(models)
@@ -155,9 +158,12 @@ def imu_errors(
         return SensorErrors(errors[0].result(), errors[1].result())
 
 
-def _level(values: np.ndarray, count: int) -> np.ndarray:
-    """C_b^n of a level body pointing north, row by row: (1, 9)."""
-    return np.eye(3).reshape(1, 9)
+def _attitude(truth_half: Truth, count: int, level: bool) -> np.ndarray:
+    """C_b^n of a level body pointing north, (1, 9), or that of the truth, which other seeds need as well."""
+    if level:
+        return np.eye(3).reshape(1, 9)
+    key = "mean attitude", weakref.ref(truth_half), count
+    return kept(key, lambda: _mean_attitude(truth_half.values, count))
 
 
 def _mean_attitude(values: np.ndarray, count: int) -> np.ndarray:

@@ -344,7 +344,7 @@ def test_without_a_log_the_law_runs_at_the_step():
             'motion.kind = \'swing\': must be "static" or "track" with a recorded IMU (imu.file)',
         ),
         ({"imu": {"begin_s": 3.0}}, "imu.begin_s = 3.0: needs a recorded IMU: imu.file"),
-        ({"imu": {"axes": "ned"}}, "imu.axes = 'ned': must be one of 'rfu' or 'frd'"),
+        ({"imu": {"axes": "ned"}}, "imu.axes = 'ned': must be one of 'rfu', 'frd', 'flu', "),
         ({"run": {"vertical": "free"}}, "run.vertical = 'free': must be one of 'locked' or 'altimeter'"),
     ],
 )

@@ -7,7 +7,8 @@
   const FAR = 0.06; // off the height that the server took: then it is told, and makes the figure anew
   const LEAST_PX = { plotly: 160, chart: 84 };
   const VIEWPORT = ".mantine-ScrollArea-viewport";
-  const TABS = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17]]; // type (px), padding (em)
+  // Type (px), padding (em) and, of the last, letter spacing (em): for fonts as wide as DejaVu Sans.
+  const TABS = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
   const FOLDS = "details[data-sb-folds]";
   const waiting = new Set();
   const chosen = new Map(); // id of what folds -> whether the user has opened it
@@ -67,9 +68,10 @@
 
   function fit(strip) {
     if (strip.getClientRects().length === 0) return;
-    const rows = ([type, padding]) => {
+    const rows = ([type, padding, spacing = 0]) => {
       strip.style.setProperty("--sb-type", `${type}px`);
       strip.style.setProperty("--sb-padding", `${padding}em`);
+      strip.style.setProperty("letter-spacing", `${spacing}em`);
       return new Set([...strip.children].map((tab) => tab.offsetTop)).size;
     };
     const fewest = rows(TABS.at(-1));
