@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 SessionCallback = Callable[["viser.ClientHandle", str], None]
 
 _EXIT_WITHIN_S = 3.0
+_SIGNAL_LOOK_S = 0.5
+"""The system may hand a signal to any thread: its handler runs when the main thread next wakes."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,8 @@ class DashboardServer:
 
         signals = (signal.SIGINT, signal.SIGTERM)
         previous = [signal.signal(number, leave) for number in signals]
-        asked.wait()
+        while not asked.wait(_SIGNAL_LOOK_S):
+            pass
         # Python waits for every pool thread at exit, however long it computes.
         hard_end = threading.Timer(_EXIT_WITHIN_S, os._exit, (0,))
         hard_end.daemon = True

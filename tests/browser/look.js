@@ -169,6 +169,14 @@ look.frontSpot = name => {
   return [frame.left + x._offset + x.d2p(trace.x[0]), frame.top + y._offset + y.d2p(trace.y[0])];
 };
 
+// Where it has been for half a second: a figure that is laid out anew moves its points.
+let frontAt = {spot: null, since: 0};
+look.frontRests = name => {
+  const spot = look.frontSpot(name);
+  if (String(spot) !== String(frontAt.spot)) frontAt = {spot, since: performance.now()};
+  return spot !== null && performance.now() - frontAt.since > 500;
+};
+
 look.panels = () => [...document.querySelectorAll('.js-plotly-plot')]
   .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Design')
   .map(p => new Set(p._fullData.map(t => t.yaxis)).size)[0] ?? 0;
