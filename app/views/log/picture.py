@@ -47,7 +47,7 @@ def log_svg(log: LogAlongTrack, delay_s: float) -> str:
         width=WIDTH,
         height=HEIGHT,
         told=_TOLD,
-        font=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        font=style.SVG_FONT,
         ink=style.INK,
         panels=Text.joined("", panels),
     )
