@@ -137,21 +137,26 @@ def forecast_from(
         )
     time_s = step_s * (np.arange(len(increments)) - len(increments) + 0.5)
     used = np.concatenate([np.arange(first, last) for first, last in segments])
-    joined = _shifted(increments, time_s, segments, order) if shifted else _turned(increments, segments)
+    joined = (
+        joined_parts(increments, segments) if not shifted else _shifted(increments, time_s, segments, order)
+    )
     factors = _fit(time_s[used], joined, order) / step_s
     return Forecast(factors[0, :3], factors[0, 3:], segments, factors[1:])
 
 
-def _turned(increments: np.ndarray, segments: tuple[tuple[int, int], ...]) -> np.ndarray:
+def joined_parts(increments: np.ndarray, segments: tuple[tuple[int, int], ...]) -> np.ndarray:
     """Increments at rest in the axes of t = 0, shape (still, 6): turned by the gyros over each motion."""
     joined = np.zeros((0, 6))
-    ends = [*(first for first, _ in segments[1:]), len(increments)]
-    for (first, last), end in zip(segments, ends, strict=True):
+    for i, (first, last) in enumerate(segments):
         part = increments[first:last]
-        joined = np.concatenate([joined, part])
-        if end > last:
+        if i > 0:
+            gap = increments[segments[i - 1][1] : first, :3]
             # The Earth's rate goes on during the motion and is no part of it.
-            joined = _turned_axes(joined, (increments[last:end, :3] - part[:, :3].mean(axis=0)).sum(axis=0))
+            joined = _turned_axes(joined, (gap - part[:, :3].mean(axis=0)).sum(axis=0))
+        joined = np.concatenate([joined, part])
+    gap = increments[segments[-1][1] :, :3]
+    if len(gap):
+        joined = _turned_axes(joined, (gap - joined[:, :3].mean(axis=0)).sum(axis=0))
     return joined
 
 

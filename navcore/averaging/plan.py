@@ -26,6 +26,8 @@ class Plan:
         Copies and groups.
     forecast : Forecast
         Forecast IMU signals in the body axes of t = 0.
+    record : ndarray, shape (seconds, 6)
+        Alignment record that it was made from: increments over each second.
     standing : ndarray, shape (15,)
         Row of truth of the vehicle before t = 0.
     notices : tuple of str
@@ -34,6 +36,7 @@ class Plan:
 
     copies: Copies
     forecast: Forecast
+    record: np.ndarray
     standing: np.ndarray
     notices: tuple[str, ...]
 
@@ -79,7 +82,7 @@ def prepare_averaging(
     shifted = averaging.segments == "shifted"
     forecast = forecast_from(record, RECORD_STEP_S, averaging.order, shifted)
     chosen = copies_of(averaging, omega_s, float(standing[LAT]), float(standing[HEIGHT]), earth)
-    return Plan(chosen, forecast, standing, _notices(chosen, forecast, imu, len(record)))
+    return Plan(chosen, forecast, record, standing, _notices(chosen, forecast, imu, len(record)))
 
 
 def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tuple[str, ...]:

@@ -7,16 +7,16 @@ import pytest
 
 from navcore.averaging import AlignmentMotion, Averaging
 from navcore.averaging.forecast import Forecast, base_motion, forecast_from, still_segments
-from navcore.averaging.record import alignment_record, standing_row, standing_signals
+from navcore.averaging.record import alignment_record, sensed_at_rest, standing_row, standing_signals
 from navcore.engine.simulation import simulate
-from navcore.foundation.earth import EARTH_RATE, WGS84
+from navcore.foundation.earth import EARTH_RATE, WGS84, attitude_matrix
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.static import StaticMotion
-from navcore.motion.truth import VE
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE
 from navcore.scenario.model import Scenario
-from navcore.sensors.imu import Imu
+from navcore.sensors.imu import Imu, imu_errors
 from navcore.sensors.noise import unit_noise
 from tests.averaging import SITE, made, truth_row
 
@@ -276,3 +276,14 @@ def test_the_method_runs_with_the_fit_that_it_is_given():
     )]  # fmt: skip
     assert [len(fit.growth) for fit in fits] == [0, 2, 0, 1]
     assert len({fit.gyro.tobytes() for fit in fits}) == 4
+
+
+def test_what_came_is_what_the_sensors_of_the_run_feel_at_rest():
+    """Turned to the navigation frame it is the errors that the error model's run has, number by number."""
+    imu = Imu(**NOISY.model_dump() | {"gyro_instability_dph": 0.02, "gyro_tau_s": 600.0})
+    came = sensed_at_rest(imu, STANDING, 500, 2.0, WGS84, 7) - standing_signals(STANDING, WGS84)
+    truth = TILTED.truth(1, 1.0, SITE, WGS84)
+    errors = imu_errors(imu.all_parts(), truth, 500, 2.0, WGS84, 7)
+    turn = attitude_matrix(*STANDING[[PITCH, ROLL, HEADING]])
+    np.testing.assert_allclose(came[:, :3] @ turn.T, errors.gyro, rtol=1e-6, atol=1e-13)
+    np.testing.assert_allclose(came[:, 3:] @ turn.T, errors.accel, rtol=1e-6, atol=1e-9)

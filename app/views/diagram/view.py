@@ -2,11 +2,14 @@
 
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
+from navcore.law.policy.variation import Variation
 from navcore.mechanization.recorder import DAMPED_COLUMN, XI_COLUMN
 from schuler_bench.plots import style
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.view import Frame, PictureView, Tab
 from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.forecast import forecast_svg
+from schuler_bench.views.diagram.membership import membership_svg
 from schuler_bench.views.diagram.svg import diagram_svg
 
 
@@ -66,9 +69,23 @@ def state_at(method: MethodRun, t_s: float) -> State:
 
 
 def _html(run: Run, index: int, state: State) -> str:
-    """Loop of a method in a state, as the page shows it."""
+    """Loop of a method in a state, as the page shows it, and beneath it what its figure is in the paper."""
     svg = diagram_svg(diagram(run.scenario, index, state), style.method_color(index), state)
-    return Text('<div class="sb-diagram" style="padding:4px 10px">{svg}</div>', svg=svg)
+    return Text(
+        '<div class="sb-diagram" style="padding:4px 10px">{svg}{beneath}</div>',
+        svg=svg,
+        beneath=beneath(run, index),
+    )
+
+
+def beneath(run: Run, index: int) -> str:
+    """Forecast of an averaging method, membership functions of the policy `variation`; else empty."""
+    method = run.scenario.method[index]
+    if method.kind.carrying == "copies":
+        return forecast_svg(run, index)
+    if isinstance(method.policy, Variation) and not method.undamped:
+        return membership_svg(method.policy)
+    return ""
 
 
 VIEW = DiagramView
