@@ -42,6 +42,8 @@ SEA = "#F4F7FA"
 
 # The page's own font stack, so that a plot's text is the page's text.
 FONT_FAMILY = '-apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif'
+SVG_FONT = FONT_FAMILY.replace('"', "'")
+"""The same as an attribute of SVG."""
 FONT_SIZE = 13
 TITLE_SIZE = 14
 

@@ -29,6 +29,7 @@ from navcore.sensors.recorded_imu import ImuRecord, check_rest, read_imu
 CHUNK = 6000
 """Samples of a chunk."""
 _COARSE_S = 120.0
+"""Length of the coarse alignment where none is given."""
 _REST_S = 60.0
 """Time from the start in which the force is held against gravity when there is no alignment."""
 _SAME_PLACE_DEG = 0.001
@@ -167,7 +168,7 @@ def _align(scenario: Scenario, record: ImuRecord, begin: int, first: int, truth:
     window, rate = record.increments[begin:first], record.rate_hz
     errors = scenario.initial_error.state()
     lat, height = float(truth.values[0, LAT]) + errors[2], float(truth.values[0, HEIGHT])
-    coarse = min(round(_COARSE_S * rate), len(window) // 2)
+    coarse = min(round((scenario.alignment.coarse_s or _COARSE_S) * rate), len(window) // 2)
     attitude = coarse_alignment(window[:coarse], rate, lat)
     # A parked vehicle's coarse attitude serves again at the beginning: the loop gets the whole window.
     rest = window if not scenario.motion.recorded else window[coarse:]
