@@ -3,13 +3,14 @@
 import numpy as np
 
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG
-from navcore.io.written_units import G
+from navcore.foundation.units import DEG, STANDARD_GRAVITY
 from navcore.sensors.recorded_imu import ImuRecord
 
 EARTH_DPH = 15.041
 _NEAR = 0.03
-_FORCE_SLIPS = {1.0 / G: "g", 1e3 / G: "mg", 100.0: "cm/s²", 1.0 / 0.3048: "ft/s²"}
+_FORCE_SLIPS = {
+    1.0 / STANDARD_GRAVITY: "g", 1e3 / STANDARD_GRAVITY: "mg", 100.0: "cm/s²", 1.0 / 0.3048: "ft/s²",
+}  # fmt: skip
 """Units by the size of gravity in them over that in m/s^2; the numbers were taken as m/s^2."""
 _TURN_SLIPS = {1.0 / DEG: ("deg/s", "rad/s"), 3600.0: ("deg/h", "deg/s"), 3600.0 / DEG: ("deg/h", "rad/s")}
 """True unit and the one that was taken, by the rate that is told over the Earth's."""
@@ -19,7 +20,9 @@ _UPWARD = {"+x": "urf", "-x": "dfr", "+y": "fur", "-y": "rdf"}
 
 def force_reason(size: float) -> str:
     """Unit in which a mean force (given as m/s^2) would be gravity, with the remedy; empty where none is."""
-    unit = next((u for ratio, u in _FORCE_SLIPS.items() if abs(size / (G * ratio) - 1.0) < _NEAR), "")
+    unit = next(
+        (u for ratio, u in _FORCE_SLIPS.items() if abs(size / (STANDARD_GRAVITY * ratio) - 1.0) < _NEAR), ""
+    )
     return Text("; in {unit} it is gravity: name this unit in the header or a map", unit=unit) if unit else ""
 
 

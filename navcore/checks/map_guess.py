@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.kernel_files import replacing
 from navcore.foundation.text import Text
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, known_columns
 from navcore.io.csv import layout
@@ -35,17 +34,9 @@ def write_map(file: str, target: str, map_file: str | None = None) -> None:
     if not takes_map(path):
         raise InputError(Fault(path.name, "write_map", target, NO_TABLE))
     text = guess(read_text(path).text, path.name)
-    goal = Path(target)
     try:
-        handle, name = tempfile.mkstemp(dir=goal.parent or ".", prefix=f".{goal.name}.")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as stream:
-                stream.write(text)
-            Path(name).chmod(0o644)
-            Path(name).replace(goal)
-        except OSError:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with replacing(Path(target)) as stream:
+            stream.write(text.encode())
     except OSError as problem:
         why = problem.strerror or type(problem).__name__
         raise InputError(Fault("", "write_map", target, Text("cannot be written ({why})", why=why))) from None

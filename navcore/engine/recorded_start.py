@@ -23,7 +23,7 @@ from navcore.mechanization.strapdown.run import turned_by
 from navcore.motion.truth import HEADING, HEIGHT, LAT, PITCH, ROLL, Site, Truth
 from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling, sampling
-from navcore.sensors.imu import Imu
+from navcore.sensors.imu import RECORDING, Imu
 from navcore.sensors.recorded_imu import ImuRecord, check_rest, read_imu
 
 CHUNK = 6000
@@ -33,7 +33,6 @@ _COARSE_S = 120.0
 _REST_S = 60.0
 """Time from the start in which the force is held against gravity when there is no alignment."""
 _SAME_PLACE_DEG = 0.001
-_NO_ERRORS = ("file", "map", "axes", "begin_s")
 
 
 @dataclass(frozen=True)
@@ -187,7 +186,7 @@ def _notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterator[str]
     unused = [
         f"imu.{name}"
         for name, info in Imu.model_fields.items()
-        if name not in _NO_ERRORS and getattr(scenario.imu, name) != info.default
+        if name not in RECORDING and getattr(scenario.imu, name) != info.default
     ]
     if unused:
         yield Text("{unused} not used: the recorded IMU brings its own errors", unused=", ".join(unused))

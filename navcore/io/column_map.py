@@ -18,7 +18,7 @@ import re
 import tomllib
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 from zoneinfo import ZoneInfo
 
 from pydantic import Field, ValidationError
@@ -60,6 +60,11 @@ class TimeMap(Parameters):
     def columns(self) -> tuple[str, ...]:
         """Names of the columns, in their order."""
         return (self.column,) if isinstance(self.column, str) else self.column
+
+    @property
+    def stated(self) -> bool:
+        """Whether the map says how the time is written; else it is guessed."""
+        return bool(self.unit or self.zone)
 
     @property
     def numeric(self) -> str:
@@ -159,6 +164,15 @@ class ColumnMap(Parameters):
                 places[entry.column], entry.column, meant.kind, meant.axis, unit, sign=float(entry.sign)
             )
         return found
+
+
+def map_field() -> Any:
+    """Declare the field ``map`` that stands beside a block's ``file``."""
+    return Field(
+        default=None,
+        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
+        json_schema_extra={"label": Text("map")},
+    )
 
 
 def read_map(path: str | os.PathLike[str], field: str = "map") -> ColumnMap:

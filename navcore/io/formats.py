@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -57,20 +58,21 @@ class Candidate:
 
 def format_of(path: Path) -> Format:
     """Find the module that reads a file; raises `InputError` for a binary file of no known format."""
-    candidate = Candidate(path)
-    for name in FORMATS:
-        module: Any = import_module(name)
-        if module.recognises(candidate):
-            return module
-    otherwise: Any = import_module(_OTHERWISE)
-    return otherwise
+    found = _recognising(path, FORMATS)
+    return found if found is not None else _module(_OTHERWISE)
 
 
 def takes_map(path: Path) -> bool:
     """Whether a file is a text table, which a map may describe; raises `InputError` for a binary file."""
+    return _recognising(path, FORMATS[:-1]) is None
+
+
+def _recognising(path: Path, names: Sequence[str]) -> Format | None:
+    """First of these modules that recognises a file."""
     candidate = Candidate(path)
-    for name in FORMATS[:-1]:
-        module: Any = import_module(name)
-        if module.recognises(candidate):
-            return False
-    return True
+    return next((found for found in map(_module, names) if found.recognises(candidate)), None)
+
+
+def _module(name: str) -> Format:
+    module: Any = import_module(name)
+    return module

@@ -10,6 +10,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.foundation.units import STANDARD_GRAVITY
 from navcore.io.cells import is_number, times
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
@@ -18,7 +19,7 @@ from navcore.io.epochs import numeric_times
 from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
 from navcore.io.mapped_rows import mapped_layout, skipped_text
 from navcore.io.mapped_times import MappedClock
-from navcore.io.written_units import UNITS, G
+from navcore.io.written_units import UNITS
 
 if TYPE_CHECKING:
     import pyarrow
@@ -35,7 +36,7 @@ _SLOWEST_S = 2.0
 """A column of time without a unit whose steps are longer may be in ms, us or ns."""
 _DATED_FROM_S = 1e8
 _GRAVITY_SHARE = 0.05
-_FORCE_UNITS = {"mps2": 1.0, "g": G, "mg": 1e-3 * G}
+_FORCE_UNITS = {unit: UNITS["force"][unit] for unit in ("mps2", "g", "mg")}
 
 
 class ImuTable(NamedTuple):
@@ -94,7 +95,7 @@ def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) 
     clocks = [clock.index] if column_map is None else column_map.clocks(source, header.names)
     rows = _Wanted(clocks, [column.index for column in columns], column_map)
     cells, raw, skipped = _numbers(text, header, rows, source)
-    mapped = column_map is not None and (column_map.time.unit or column_map.time.zone)
+    mapped = column_map is not None and column_map.time.stated
     if mapped and column_map is not None:
         time_s, told = _mapped_seconds(cells, column_map, source)
     else:
@@ -187,7 +188,9 @@ def _factors(columns: list[ImuColumn], raw: np.ndarray, source: str) -> tuple[np
     if not bare:
         return np.array([column.factor for column in columns]), ()
     size = float(np.linalg.norm(raw[:, 3:].mean(axis=0)))
-    unit = next((u for u, si in _FORCE_UNITS.items() if abs(size * si / G - 1.0) < _GRAVITY_SHARE), "")
+    unit = next(
+        (u for u, si in _FORCE_UNITS.items() if abs(size * si / STANDARD_GRAVITY - 1.0) < _GRAVITY_SHARE), ""
+    )
     unsure = [column for column in bare if column.kind != FORCE or not unit]
     if unsure:
         needed = ", ".join(UNITS[DIMENSIONS[unsure[0].kind]])

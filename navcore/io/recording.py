@@ -87,7 +87,7 @@ def load(
     for key in file_keys(paths, where, field):
         path = Path(key[0])
         try:
-            mapped = column_map if column_map is not None and takes_map(path) else None
+            mapped = column_map if column_map is not None and _takes_map(key) else None
             taken += mapped is not None
             parts.append(
                 kept(
@@ -108,6 +108,11 @@ def load(
         raise InputError(Fault(where, field, None, _MIXED_DATES))
     sources = tuple(source for part in parts for source in part.sources)
     return Recording(**quantities, sources=sources)
+
+
+def _takes_map(key: FileKey) -> bool:
+    path = Path(key[0])
+    return kept(("takes map", key), lambda: guarded.call(path.name, takes_map, path))
 
 
 def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "") -> tuple[FileKey, ...]:

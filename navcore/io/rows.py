@@ -1,8 +1,19 @@
 """Rows of a text table before their cells are numbers."""
 
+import csv
 from dataclasses import dataclass, field
 
 from navcore.io.column_names import Column
+
+
+def split_line(line: str, separator: str) -> list[str]:
+    """Cells of one line; a space as separator stands for any white space."""
+    if separator == " ":
+        return line.split()
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:
+        return line.split(separator)
 
 
 @dataclass

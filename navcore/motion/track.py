@@ -15,6 +15,7 @@ from navcore.foundation.parameters import FileName, quantity
 from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
+from navcore.io.column_map import map_field
 from navcore.io.recording import Window, file_keys, load, require_cover, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.motion.base import MotionParameters, Streams
@@ -72,11 +73,7 @@ class TrackMotion(MotionParameters):
         ),
         json_schema_extra={"label": Text("track files")},
     )
-    map: FileName | None = Field(
-        default=None,
-        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
-        json_schema_extra={"label": Text("map")},
-    )
+    map: FileName | None = map_field()
     pitch_deg: float = quantity(
         0.0,
         unit="deg",
