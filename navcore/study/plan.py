@@ -86,20 +86,23 @@ class Plan:
 
     def at(self, number: int) -> tuple[Setting, int]:
         """Setting of a run, and what is added to ``run.seed``."""
-        places: dict[int, int] = {}
-        for axis, size in zip(reversed(self._axes), reversed(self._sizes), strict=True):
-            number, places[axis] = divmod(number, size)
+        places = self._places(number)
         return tuple(places[axis] for axis in range(len(self.grid) + 1)), places[-1]
 
     def cells(self, numbers: np.ndarray) -> np.ndarray:
         """Return the number of the grid's combination, in the order of `combinations`, for each run, (n,)."""
-        places, left = {}, numbers.astype(np.int64)
-        for axis, size in zip(reversed(self._axes), reversed(self._sizes), strict=True):
-            left, places[axis] = np.divmod(left, size)
+        places = self._places(numbers.astype(np.int64))
         cell = np.zeros(len(numbers), np.int64)
         for k, factor in enumerate(self.grid, 1):
             cell = cell * len(factor.values) + places[k]
         return cell
+
+    def _places(self, left: Any) -> dict[int, Any]:
+        """Place on each axis of a run, or of an array of runs, by number."""
+        places = {}
+        for axis, size in zip(reversed(self._axes), reversed(self._sizes), strict=True):
+            left, places[axis] = divmod(left, size)
+        return places
 
     @property
     def cell_count(self) -> int:
