@@ -7,6 +7,7 @@ from collections.abc import Callable
 from navcore.engine.run import Run
 from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
 from schuler_bench.jobs.judge import Judge
+from schuler_bench.jobs.sweeper import Sweeper
 from schuler_bench.jobs.why import Explainer
 
 _log = logging.getLogger("schuler.searches")
@@ -36,6 +37,8 @@ class Searches:
         Every network tuned for the limits.
     judge : Judge
         Shares of seeds that meet the limits.
+    sweeper : Sweeper
+        Runs at other latitudes, log errors, sensor grades and sea states.
     """
 
     def __init__(self, name: str) -> None:
@@ -48,6 +51,7 @@ class Searches:
         self.fronts = Fronts(self._tell, name)
         self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
+        self.sweeper = Sweeper(self._tell, name)
         self._all = (
             self.explainer,
             self.tuner,
@@ -56,6 +60,7 @@ class Searches:
             self.fronts,
             self.limits,
             self.judge,
+            self.sweeper,
         )
 
     def watch(self, changed: Callable[[], None]) -> None:
@@ -76,6 +81,7 @@ class Searches:
         """The scenario has changed: the processors belong to its run."""
         self.explainer.cancel()
         self.judge.cancel()
+        self.sweeper.cancel()
 
     def explain(self, run: Run) -> None:
         """Compute what dominates a run: a view that says so is in front and shows the run."""

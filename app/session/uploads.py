@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.motion.truth import LAT, LON
+from navcore.scenario.file import FILE_FIELDS, names_files
 from navcore.scenario.model import Scenario
 from schuler_bench.http.limits import MIB, Limits
 from schuler_bench.session.folder import TEMPORARY, opened, remove_files, temporary_name
@@ -27,8 +27,6 @@ LARGEST_FILE = Limits().upload_bytes
 MOST_FILES = 12
 LARGEST_FOLDER = 64 * MIB
 
-_WITH_FILES = ("motion", "reference", "imu")
-"""Blocks of a scenario that may name files: a visitor's must name none of the server's."""
 IMU = "imu"
 _ALIGNED_S = 600.0
 _ALIGNED_PART = 0.5
@@ -355,7 +353,7 @@ def complete_scenario(text: str, name: str) -> dict[str, Any]:
 
 def with_plain_names(scenario: Scenario) -> Scenario:
     """For a download: files by their names alone, to be put beside the scenario."""
-    if all(getattr(getattr(scenario, block), "file", None) is None for block in _WITH_FILES):
+    if not names_files(scenario):
         return scenario
     return Scenario.parse(plain_names(scenario.canonical()))
 
@@ -368,7 +366,7 @@ def plain_names(data: dict[str, Any]) -> dict[str, Any]:
 def _renamed(data: dict[str, Any], rename: Callable[[str, str], str]) -> dict[str, Any]:
     """Give every file in a scenario's canonical data the name ``rename(field, name)``."""
     data = dict(data)
-    for block, key in product(_WITH_FILES, ("file", "map")):
+    for block, key in FILE_FIELDS:
         named = data.get(block, {}).get(key)
         if named:
             single = isinstance(named, str)

@@ -40,6 +40,7 @@ VIEWS: tuple[str, ...] = (
     "schuler_bench.views.requirements",
     "schuler_bench.views.design",
     "schuler_bench.views.tune",
+    "schuler_bench.views.sweep",
     "schuler_bench.views.scenario_text",
 )
 """Packages of the views, in the order of their tabs."""

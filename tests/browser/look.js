@@ -148,6 +148,11 @@ look.bars = () => [...document.querySelectorAll('.js-plotly-plot')]
   .flatMap(p => p._fullData.filter(t => t.yaxis === 'y').map(t => t.x[2]))
   .reduce((a, b) => a + b, 0);
 
+// Values of each curve of the tab "Sweep".
+look.sweep = () => [...document.querySelectorAll('.js-plotly-plot')]
+  .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Sweep')
+  .flatMap(p => p._fullData.map(t => [...t.y]));
+
 // Bands of the plot of the east velocity, and the sum of the last one's upper edge.
 look.band = () => {
   const chart = Object.values(window.__viserTestpoints?.uplots ?? {})

@@ -48,6 +48,7 @@ window.schuler.words = {
   "Sensors": "传感器",
   "Spectrum": "频谱",
   "Step": "阶跃",
+  "Sweep": "扫描",
   "Switching": "切换",
   "Tune": "整定",
   "Find a command": "查找命令",
