@@ -42,7 +42,7 @@ class Column:
         upper = self._gui.add_panel()
         upper.dock_right()
         self._panels, self._tabs = [upper], {}
-        if layout.wide:
+        if layout.two:
             lower = self._gui.add_panel()
             lower.dock_below(upper)
             self._panels.append(lower)
