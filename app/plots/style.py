@@ -171,12 +171,16 @@ def without_legend(figure: Any, names: Sequence[str], width_px: float) -> None:
     named = [trace for trace in figure["data"] if trace.get("showlegend", True)]
     gone = {plain(name) for name in names}
     left = [trace["name"] for trace in named if trace["name"] not in gone]
+    if len(left) == len(named):
+        return
     for trace in named:
         trace["showlegend"] = trace["name"] not in gone
     rows = legend_rows([trace["name"] for trace in named], width_px - _BESIDE_PX)
     more = rows - legend_rows(left, width_px - _BESIDE_PX) * bool(left)
-    margin = figure["layout"]["margin"]
-    figure["layout"]["margin"] = margin | {"b": margin["b"] - _ROW_PX * more}
+    layout = figure["layout"]
+    layout["margin"] = layout["margin"] | {"b": layout["margin"]["b"] - _ROW_PX * more}
+    # entries of groups stand below each other
+    layout["legend"] = layout.get("legend", {}) | {"traceorder": "normal"}
 
 
 def lines(method: str, index: int, width: float = LINE_WIDTH) -> dict[str, Any]:

@@ -161,7 +161,7 @@ def layout_for(
     if presentation:
         return replace(_presented(width, height), letter=letter)
     left, view, right = columns.widths(width)
-    two, below = height >= TWO_FROM_PX, height - BAR_PX - STRIP_PX
+    two, below = height >= TWO_FROM_PX + 4 * _TOUCH_PX * touch, height - BAR_PX - STRIP_PX
     room = below // (2 if two else 1) - _TABS_PX - _TOUCH_PX * touch
     plot = right - _COLUMN_PADDING_PX
     return Layout(

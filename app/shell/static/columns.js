@@ -110,7 +110,6 @@
 
   function show() {
     document.documentElement.style.setProperty("--sb-upper", kept.upper);
-    document.documentElement.dataset.mode = kept.mode;
     const right = region("right");
     for (const { line, at, upright, key } of DIVIDERS) {
       const here = at();
@@ -128,6 +127,13 @@
     for (const part of document.querySelectorAll('[data-dock-region], [data-dock-region="right"] [data-dock-leaf]')) sizes.observe(part);
   });
   addEventListener("resize", show);
+
+  // ------------------------------------------------------------ a window in which nothing has room (page.css)
+
+  const small = document.createElement("p");
+  small.id = "sb-too-small";
+  small.textContent = "This page needs a window at least 700 px wide: open it on a tablet or a computer.";
+  document.documentElement.append(small);
 
   // ------------------------------------------------------------ viser's own ways to take a panel apart
 

@@ -90,7 +90,8 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
         ended = Text.joined(", ", [words for words in (ENDINGS.get(method.status, ""), word(state)) if words])
         said = Text("<i>{words}</i>", words=ended) if ended else ""
         yield Text(
-            '<div class="sb-result" data-state="{state}" style="--color:{color}"><button class="sb-eye" '
+            '<div class="sb-result" data-state="{state}" data-edited="{pressed}" '
+            'style="--color:{color}"><button class="sb-eye" '
             'data-command="{legend} {name:html}" title="{hint}" aria-label="{name:html}: {hint}"></button>'
             '<button class="sb-edit" data-command="{edit} {place}" aria-pressed="{pressed}" '
             'title="Edit {name:html}"><b>{name:html}</b>{said}{numbers}</button></div>',
@@ -125,7 +126,11 @@ def _numbers(method: MethodRun, before: MethodRun | None, display: Display) -> I
         else:
             unit = wanted_unit(getattr(display, choice), value, suitable)
             text = with_unit(rounded(value / unit.si), unit.name)
-        yield _number(label, QUANTITIES[key].label, text, _change(value, before, key))
+        change = _change(value, before, key)
+        title = QUANTITIES[key].label
+        if change:
+            title = Text("{label}; {change} since the pin", label=title, change=change)
+        yield _number(label, title, text, change)
 
 
 def _change(value: float, before: MethodRun | None, key: str) -> str:
@@ -133,7 +138,7 @@ def _change(value: float, before: MethodRun | None, key: str) -> str:
     if not (math.isfinite(old) and math.isfinite(value) and old):
         return ""
     part = round(100.0 * (value - old) / abs(old))
-    return Text('<i title="change since the pin">{part:+d} %</i>', part=part) if part else ""
+    return f"{part:+d} %" if part else ""
 
 
 def _met(count: int, missed: list[str]) -> str:
@@ -151,7 +156,7 @@ def _number(label: str, title: str, text: str, change: str = "") -> str:
         title=title,
         label=label,
         text=text,
-        change=change,
+        change=change and f"<i>{change}</i>",
     )
 
 
