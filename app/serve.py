@@ -39,6 +39,7 @@ _SCRIPTS = (
     "drawn",
     "marks",
     "room",
+    "columns",
     "alone",
     "page",
     "commands",

@@ -3,6 +3,7 @@
 from typing import Any, ClassVar
 
 from navcore.engine.run import Run
+from schuler_bench.plots import style
 from schuler_bench.plots.pinned import restyled, together
 from schuler_bench.plots.plotly_data import PlotlyFigure, enlarged
 from schuler_bench.session.shown import Shown
@@ -75,9 +76,21 @@ class PlotlyView(PictureView[PlotlyFigure]):
         return self.frame.layout().text_px
 
     def picture(self, found: Shown) -> PlotlyFigure:
-        """Make the figure; it carries its proportions, the run's number and the tab's title."""
+        """Make the figure; it carries its proportions, the run's number and the tab's title.
+
+        The strip of results names the run's methods in their colours: their legend goes, but in a view alone.
+        """
+        figure = self._drawn(found)
+        if not self.frame.layout().alone:
+            style.without_legend(figure, [method.method.name for method in found.run.methods], self.width_px)
+        return self._carrying(figure, found)
+
+    def _drawn(self, found: Shown) -> PlotlyFigure:
         figure = self.figure(together(found.run, found.pins), found)
         restyled(figure, found.run, found.pins)
+        return figure
+
+    def _carrying(self, figure: PlotlyFigure, found: Shown) -> PlotlyFigure:
         carried = {"aspect": self._on_screen, "run": found.number, "view": self.title}
         figure["layout"]["meta"] = figure["layout"]["meta"] | carried
         return enlarged(figure, self.frame.layout().scale)
@@ -94,4 +107,4 @@ class PlotlyView(PictureView[PlotlyFigure]):
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the figure to be saved."""
         del plot
-        return self.picture(found), []
+        return self._carrying(self._drawn(found), found), []

@@ -27,7 +27,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.commands import Commands
 from schuler_bench.shell.control import Control, Section
 from schuler_bench.shell.editor import Editor
-from schuler_bench.shell.layout import Layout
+from schuler_bench.shell.layout import BAR_PX, STRIP_PX, Layout
 from schuler_bench.shell.opening import Opening
 
 if TYPE_CHECKING:
@@ -54,6 +54,8 @@ class Frame:
     ----------
     client : viser.ClientHandle
         The browser.
+    bar : Tab
+        The top bar: widgets that are made inside it stand there, in the order of their numbers.
     session : Session
         Whose work is shown.
     commands : Commands
@@ -75,6 +77,7 @@ class Frame:
     """
 
     client: viser.ClientHandle
+    bar: Tab
     session: Session
     commands: Commands
     editor: Editor
@@ -290,6 +293,7 @@ def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> 
     )
     first = first.replace("PAGE_STATE", state_id).replace("PAGE_COMMAND", command_id)
     first = first.replace("PAGE_FONT", style.FONT_FAMILY)
+    first = first.replace("BAR_PX", f"{BAR_PX}").replace("STRIP_PX", f"{STRIP_PX}")
     return first + table.CSS + last + style.UPLOT_CSS
 
 

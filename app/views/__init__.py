@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 VIEWS: tuple[str, ...] = (
     "schuler_bench.views.scene",
+    "schuler_bench.views.strip",
     "schuler_bench.views.start",
     "schuler_bench.views.verification",
     "schuler_bench.views.explain",

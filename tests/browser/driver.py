@@ -22,7 +22,7 @@ from schuler_bench.session.display import Display
 from schuler_bench.session.names import GivenNames
 from schuler_bench.session.session import Session
 from schuler_bench.session.sessions import Sessions
-from schuler_bench.shell.layout import WIDE_FROM_PX, layout_for
+from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.page import Page as OpenPage
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
@@ -281,8 +281,8 @@ class Bench:
         """Give the window another size and wait until the page is laid out anew."""
         width, height = size
         self.page.set_viewport_size({"width": width, "height": height})
-        right, panels = layout_for(width, height).right_px, 2 if width >= WIDE_FROM_PX else 1
-        self.page.wait_for_function("look.laidOut", arg=[panels, right])
+        layout = layout_for(width, height)
+        self.page.wait_for_function("look.laidOut", arg=[1 + layout.two, layout.right_px])
         self.heard()
 
     def settle(self) -> None:

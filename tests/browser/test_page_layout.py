@@ -9,7 +9,7 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from navcore.scenario.file import load as load_preset
 from navcore.scenario.model import Scenario
 from schuler_bench.misprints import MISPRINTS
-from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.shell.layout import BAR_PX, STRIP_PX, layout_for
 from schuler_bench.views import load
 from schuler_bench.views.poles.figure import ZOOM
 from tests.browser.conftest import Another
@@ -61,7 +61,8 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         sized.tab(tab)
         page.wait_for_function("look.drawn")
     filled = [found for found in page.evaluate("look.filled") if found is not None]
-    assert filled and min(filled) >= 0.75 * size["height"] / (2 if size["width"] >= WIDE_FROM_PX else 1) - 60
+    panels = 1 + layout_for(**size).two
+    assert filled and min(filled) >= 0.9 * (size["height"] - BAR_PX - STRIP_PX) / panels - 60
     assert page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in page.locator("pre").first.inner_text()
 

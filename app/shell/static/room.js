@@ -30,7 +30,26 @@
     if (lines) chosen.set(lines.id, !lines.open);
   }, true);
 
+  // The tools above a plot stand beside the tabs of their panel, where both have room in one row (page.css).
+  const TOOL = ':is([data-sb-kind="select"], [data-sb-kind="number"], [data-sb-kind="other"], [data-sb-kind="mark"])';
+  function raise(viewport) {
+    const strip = viewport.closest("[data-dock-group]")?.querySelector(":scope > [data-dock-strip]");
+    const area = strip?.nextElementSibling;
+    if (!area) return;
+    const tools = [...viewport.querySelectorAll(`[data-sb-holds~="tools"] > ${TOOL}`)];
+    const tabs = [...(strip?.children ?? [])];
+    const look = viewport.querySelector(".sb-look")?.title;
+    if (look) tabs.find((tab) => tab.ariaSelected === "true")?.setAttribute("title", look);
+    if (tools.length < 2 || tabs.length === 0 || new Set(tabs.map((tab) => tab.offsetTop)).size > 1) return area.removeAttribute("data-sb-up");
+    area.dataset.sbUp = "";
+    area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
+    area.style.setProperty("--sb-left-px", `${tabs.at(-1).offsetLeft + tabs.at(-1).offsetWidth - tabs[0].offsetLeft + 10}px`);
+    const rows = tools.map((tool) => Math.round(tool.getBoundingClientRect().top));
+    if (Math.max(...rows) - Math.min(...rows) > strip.offsetHeight / 2 || viewport.scrollWidth > viewport.clientWidth) area.removeAttribute("data-sb-up");
+  }
+
   function fill(viewport) {
+    raise(viewport);
     fold(viewport);
     const frame = viewport.getBoundingClientRect();
     const seen = (plot) => viewport.contains(plot) && plot.getClientRects().length > 0;

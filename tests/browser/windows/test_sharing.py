@@ -12,7 +12,7 @@ import viser
 import schuler_bench.shell
 from navcore.scenario.model import Scenario
 from schuler_bench.http.server import start
-from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.shell.layout import layout_for
 from schuler_bench.views import load
 from tests.browser.driver import Bench
 from tests.browser.patience import THROTTLE_MS
@@ -134,8 +134,7 @@ def test_a_lost_server_is_told(visitor: Bench, lost: Callable[[], None]) -> None
 
 
 def test_an_address_opens_tabs_and_one_view_alone(window: Bench, visitor: Bench) -> None:
-    wide = window.page.viewport_size["width"] >= WIDE_FROM_PX
-    tabs = ["Sensors", *(["Frequency"] if wide else []), "Spectrum"]
+    tabs = ["Sensors", *(["Frequency"] if layout_for(*window.size).two else []), "Spectrum"]
     window.tab(*tabs)
     window.page.evaluate("() => schuler.command('share-view')")
     link = see(window, window.dialog("Share this state").get_by_role("textbox")).input_value()
