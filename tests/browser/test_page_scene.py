@@ -131,6 +131,7 @@ def test_errors_are_enlarged_in_3d(still: Bench) -> None:
     page.get_by_role("slider", name="time in the run").press("Home")
     page.wait_for_function("end => String(look.line('/error/method0')) !== String(end)", arg=at_end)
     before = still.line("/track/method0")
+    still.tab("View")
     still.choose("enlarge errors in 3D", "50")
     page.locator("#sb-stage .sb-key [data-is=caption]", has_text="x 50").wait_for()
     page.wait_for_function("old => String(look.line('/track/method0')) !== String(old)", arg=before)
