@@ -80,12 +80,12 @@ class PlotlyView(PictureView[PlotlyFigure]):
 
         The strip of results names the run's methods in their colours: their legend goes, but in a view alone.
         """
-        figure = self._drawn(found)
+        figure = self._complete(found)
         if not self.frame.layout().alone:
             style.without_legend(figure, [method.method.name for method in found.run.methods], self.width_px)
         return self._carrying(figure, found)
 
-    def _drawn(self, found: Shown) -> PlotlyFigure:
+    def _complete(self, found: Shown) -> PlotlyFigure:
         figure = self.figure(together(found.run, found.pins), found)
         restyled(figure, found.run, found.pins)
         return figure
@@ -107,4 +107,4 @@ class PlotlyView(PictureView[PlotlyFigure]):
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the figure to be saved."""
         del plot
-        return self._carrying(self._drawn(found), found), []
+        return self._carrying(self._complete(found), found), []

@@ -97,21 +97,19 @@ class Toolbar:
                 buttons=Text.joined("", each),
             )
             _put(handle, row)
-        text, button = Text("Unchanged since {origin} was opened", origin=origin), ""
+        text, button = Text("Unchanged"), ""
+        told = Text("Unchanged since {origin} was opened", origin=origin)
         if changed:
             text = Text.plural(
-                "{changed} field changed from {origin}",
-                "{changed} fields changed from {origin}",
-                count=changed,
-                changed=changed,
-                origin=origin,
+                "{changed} field changed", "{changed} fields changed", count=changed, changed=changed
             )
+            told = Text("{text} from {origin}", text=text, origin=origin)
         if last is not None:
             name, label, value = last
-            text = Text("{label} was {value}", label=label, value=value)
+            text = told = Text("{label} was {value}", label=label, value=value)
             hint = Text("Reset {label} to {value}", label=label, value=value)
             button = _button(f"{RESET_FIELD} {name}", Text("Reset"), hint, True)
-        words = Text('<span title="{text:html}">{text:html}</span>', text=text)
+        words = Text('<span title="{told:html}">{text:html}</span>', told=told, text=text)
         _put(
             self._changed,
             Text(

@@ -228,11 +228,12 @@ look.clipped = () => {
     const text = range.getBoundingClientRect();
     let [cut, scrolls] = [text.left < -1 || text.right > innerWidth + 1, false];
     for (let at = parent; at !== document.body; at = at.parentElement) {
-      const {clipPath, overflowX, overflowY} = getComputedStyle(at), box = at.getBoundingClientRect();
+      const {clipPath, overflowX, overflowY, position} = getComputedStyle(at), box = at.getBoundingClientRect();
       if (clipPath !== 'none' || box.width < 2) { cut = false; break; } // for screen readers
       cut ||= overflowX !== 'visible' && (text.left < box.left - 1.5 || text.right > box.right + 1.5);
       scrolls ||= ['auto', 'scroll'].includes(overflowY);
       cut ||= !scrolls && overflowY === 'hidden' && (text.top < box.top - 3 || text.bottom > box.bottom + 3);
+      if (position === 'fixed') break; // what is around it does not cut it
     }
     if (cut) found.push(data.trim());
   }
@@ -291,7 +292,7 @@ look.covered = () => {
   const met = (a, b) => b.width > 1 && a.left < b.right - 0.5 && b.left < a.right - 0.5
     && a.top < b.bottom - 0.5 && b.top < a.bottom - 0.5;
   const seen = l => l.offsetParent !== null && l.getBoundingClientRect().width > 2
-    && !l.closest('[data-sb-kind=slider] + [data-sb-kind=number], [data-sb-kind=hidden]');
+    && !l.closest('[data-sb-kind=slider] + [data-sb-kind=number], [data-sb-kind=hidden], [data-sb-holds~=topbar]');
   const labels = [...document.querySelectorAll('label[for]')].filter(seen);
   const found = [];
   for (const label of labels) {
@@ -639,7 +640,9 @@ look.hidden = element => {
     || box.right > frame.right + 1.5 || box.bottom > frame.bottom + 1.5;
   const told = box => [box.left, box.top, box.right, box.bottom].map(Math.round).join();
   const frames = [];
-  for (let at = element.parentElement; at; at = at.parentElement) {
+  // what is around something fixed does not cut it
+  const inside = at => (getComputedStyle(at).position === 'fixed' ? null : at.parentElement);
+  for (let at = inside(element); at; at = inside(at)) {
     const {overflowX, overflowY} = getComputedStyle(at);
     if (overflowX === 'visible' && overflowY === 'visible') continue;
     const frame = at.getBoundingClientRect(), box = element.getBoundingClientRect();

@@ -102,7 +102,7 @@ def test_one_field_is_reset_and_all_of_them(fresh: Bench, session: Session) -> N
     fresh.settle()
     palette(fresh, f"Reset {label_of(SIGMA)} to 0.0088")
     wait_for_value(fresh, SIGMA, 0.0088)
-    changed.get_by_text("Unchanged since zha-fast was opened").wait_for()
+    changed.get_by_title("Unchanged since zha-fast was opened").wait_for()
     assert fresh.button("Reset all").get_attribute("aria-disabled") == "true"
     fresh.type(XI, "0.4")
     fresh.choose_and_run("method.damping", "free")

@@ -146,7 +146,9 @@
   // ------------------------------------------------------------ viser's own settings, behind ours
 
   addEventListener("click", ({ target }) => {
-    if (!(target instanceof Element) || !target.closest("[data-viewer]")) return;
+    if (!(target instanceof Element)) return;
+    target.closest("#sb-menu button")?.closest("#sb-menu").hidePopover();
+    if (!target.closest("[data-viewer]")) return;
     document.querySelector("[data-dock-unmergeable-header] button:last-of-type")?.click();
   });
 })();

@@ -8,6 +8,7 @@
   const CHOICE_MS = 2000;
   const HEAD_PX = 104; // top bar and strip of results
   const NARROW_PX = 60; // narrower it is a rail
+  const LOW_PX = 800; // lower, and small, it has room for one instrument
   const WITHOUT = {
     missing: "No 3D view: this browser has no WebGL. Controls, plots and tables work.",
     lost: "The 3D view is lost: the browser has taken its WebGL away. Controls, plots and tables work. Load the page again to get it back.",
@@ -90,7 +91,7 @@
 
   // A small view has room for one of them.
   function reveal(button, shown) {
-    if (shown && stage.classList.contains("sb-small")) {
+    if (shown && stage.classList.contains("sb-one")) {
       for (const other of stage.querySelectorAll("[data-shows]")) if (other !== button) reveal(other, false);
     }
     button.setAttribute("aria-pressed", String(shown));
@@ -201,10 +202,12 @@
     stage.style.height = `${Math.round(box.height)}px`;
     const scale = Number(document.getElementById("sb-size")?.dataset.scale ?? 1);
     const small = box.width < 480 * scale;
-    if (small === stage.classList.contains("sb-small")) return;
+    const one = small && box.height < LOW_PX * scale;
     stage.classList.toggle("sb-small", small);
+    if (one === stage.classList.contains("sb-one")) return;
+    stage.classList.toggle("sb-one", one);
     const shown = stage.querySelectorAll('[data-shows][aria-pressed="true"]');
-    if (small && shown.length > 1) reveal(shown[0], true);
+    if (one && shown.length > 1) reveal(shown[0], true);
   }
 
   // The server slows the playback down when it hears nothing, and it hears nothing while the user moves something.

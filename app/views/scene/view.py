@@ -200,7 +200,7 @@ def bar_html(
 
 
 # What stands over the view (playback.css, playback.js), px.
-_PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 285, 500, 900
+_PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 330, 500, 900
 _BAR_PX, _BAR_TEXT_PX = {False: 88, True: 122}, 305
 """Height of the bar in two rows and in three, and width of the view from which two hold it."""
 _MARGIN_PX, _CAPTION_PX, _CAPTION_TEXT_PX, _KEY_ROW_PX, _KEY_ROWS = 8, 22, 400, 22, 5

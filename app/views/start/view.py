@@ -60,11 +60,11 @@ _STEPS: tuple[dict[str, str], ...] = (
     },
     {
         "tab": Text("Errors"),
-        "find": ".sb-legend",
-        "title": Text("Errors over time"),
+        "find": "#sb-strip",
+        "title": Text("Results and errors"),
         "text": Text(
-            "One colour a method, in every picture. A click on a name leaves it out of the scale, dims "
-            "or hides it."
+            "A card a method, with its colour in every picture. A click lets the controls edit it; one on "
+            "its dot leaves it out of the scale, dims or hides it."
         ),
     },
     {
