@@ -3,7 +3,7 @@
 from typing import Any, ClassVar
 
 from navcore.engine.run import Run
-from schuler_bench.plots.pinned import restyled, together
+from schuler_bench.plots.pinned import restyled, together, without_hidden
 from schuler_bench.plots.plotly_data import PlotlyFigure, enlarged
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.layout import CHOOSER_PX
@@ -76,8 +76,10 @@ class PlotlyView(PictureView[PlotlyFigure]):
 
     def picture(self, found: Shown) -> PlotlyFigure:
         """Make the figure; it carries its proportions, the run's number and the tab's title."""
-        figure = self.figure(together(found.run, found.pins), found)
+        both = together(found.run, found.pins)
+        figure = self.figure(both, found)
         restyled(figure, found.run, found.pins)
+        without_hidden(figure, [found.display.state_of(one.method.name) == "hidden" for one in both.methods])
         carried = {"aspect": self._on_screen, "run": found.number, "view": self.title}
         figure["layout"]["meta"] = figure["layout"]["meta"] | carried
         return enlarged(figure, self.frame.layout().scale)

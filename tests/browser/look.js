@@ -134,6 +134,9 @@ look.moved = async ids => {
   }
 };
 
+look.drawnNames = () => [...document.querySelectorAll('.js-plotly-plot')].flatMap(
+  p => p._fullData.filter(t => t.visible === true).map(t => t.name));
+
 look.opacity = () => Number(getComputedStyle(document.querySelector('.js-plotly-plot')).opacity);
 
 // ------------------------------------------------------------ test_page_jobs
@@ -319,7 +322,8 @@ look.broken = within => {
 
 // Rows in which the tabs of each panel stand.
 look.rows = () => [...document.querySelectorAll('[role=tablist]')].map(list => {
-  const boxes = [...list.querySelectorAll('[role=tab]')].map(tab => tab.getBoundingClientRect());
+  const tabs = [...list.querySelectorAll('[role=tab]')].filter(tab => tab.getClientRects().length > 0);
+  const boxes = tabs.map(tab => tab.getBoundingClientRect());
   const tops = boxes.map(box => Math.round(box.top));
   return new Set(tops).size;
 });
