@@ -328,6 +328,17 @@ look.rows = () => [...document.querySelectorAll('[role=tablist]')].map(list => {
   return new Set(tops).size;
 });
 
+// Of each strip of results its groups, from left to right: name and tabs.
+look.groups = () => [...document.querySelectorAll('[data-dock-strip]:has([data-sb-group])')].map(strip => {
+  const tabs = [...strip.children].filter(tab => tab.getClientRects().length > 0);
+  const left = tab => tab.getBoundingClientRect().left;
+  return tabs.sort((one, other) => left(one) - left(other)).reduce((groups, tab) => {
+    if (tab.dataset.sbGroup || groups.length === 0) groups.push([tab.dataset.sbGroup, []]);
+    groups.at(-1)[1].push(tab.textContent);
+    return groups;
+  }, []);
+});
+
 look.axes = () => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null)
   .flatMap(p => Object.entries(p._fullLayout).filter(([k]) => /^[xy]axis/.test(k))
   .map(([k, a]) => [k, a.title?.text || a.matches || !a.showticklabels]));
