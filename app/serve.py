@@ -38,6 +38,7 @@ _SCRIPTS = (
     "paths",
     "drawn",
     "marks",
+    "groups",
     "room",
     "columns",
     "alone",

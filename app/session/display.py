@@ -138,9 +138,15 @@ class Display(BaseModel):
 
     def clicked(self, key: str) -> tuple[tuple[str, State], ...]:
         """`legend` after a click on a curve's entry: the last 60 choices count."""
+        return self._with_state(key, after(self.state_of(key)))
+
+    def looked(self, key: str) -> tuple[tuple[str, State], ...]:
+        """`legend` after a click on a curve's eye, which hides it or shows it again."""
+        return self._with_state(key, "shown" if self.state_of(key) == "hidden" else "hidden")
+
+    def _with_state(self, key: str, state: State) -> tuple[tuple[str, State], ...]:
         others = tuple(entry for entry in self.legend if entry[0] != key)
-        entry: tuple[str, State] = key, after(self.state_of(key))
-        return others if entry[1] == "shown" else (*others[-59:], entry)
+        return others if state == "shown" else (*others[-59:], (key, state))
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

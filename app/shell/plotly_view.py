@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 from navcore.engine.run import Run
 from schuler_bench.plots import style
-from schuler_bench.plots.pinned import restyled, together
+from schuler_bench.plots.pinned import restyled, together, without_hidden
 from schuler_bench.plots.plotly_data import PlotlyFigure, enlarged
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.layout import CHOOSER_PX
@@ -86,8 +86,10 @@ class PlotlyView(PictureView[PlotlyFigure]):
         return self._carrying(figure, found)
 
     def _complete(self, found: Shown) -> PlotlyFigure:
-        figure = self.figure(together(found.run, found.pins), found)
+        both = together(found.run, found.pins)
+        figure = self.figure(both, found)
         restyled(figure, found.run, found.pins)
+        without_hidden(figure, [found.display.state_of(one.method.name) == "hidden" for one in both.methods])
         return figure
 
     def _carrying(self, figure: PlotlyFigure, found: Shown) -> PlotlyFigure:

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 Place = Literal["edit", "upper", "lower", "page"]
 """Left tabs with controls; tabs of the upper and of the lower right panel; anywhere, without a tab."""
+Group = Literal["", "network", "run", "decide", "more"]
+"""Tabs of results that stand together behind its name; "more": in a list at the end of their strip."""
 Tab = AbstractContextManager[Any]
 """Widgets that are made inside it stand in the tab."""
 Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
@@ -124,6 +126,8 @@ class View:
         Of its tab; "" for a view without one.
     place : Place
         Where it stands.
+    group : Group
+        Of a tab of the right column.
     look_for : str
         What to look for in it, in one line at the top of a tab of the right column.
     focus : str
@@ -138,6 +142,7 @@ class View:
 
     title: ClassVar[str] = ""
     place: ClassVar[Place] = "page"
+    group: ClassVar[Group] = ""
     look_for: ClassVar[str] = ""
     focus: ClassVar[str] = ""
     alone: ClassVar[tuple[str, ...]] = ()

@@ -24,6 +24,7 @@ from schuler_bench.session.session import Session
 from schuler_bench.session.sessions import Sessions
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.page import Page as OpenPage
+from tests.browser.choosing import Choosing
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
@@ -43,7 +44,7 @@ def _has_callbacks(view: OpenPage) -> bool:
     return visitor in pool._waiting or visitor in pool._running
 
 
-class Bench:
+class Bench(Choosing):
     """The page of one visitor.
 
     Parameters
@@ -128,14 +129,6 @@ class Bench:
     def dialog(self, name: str) -> Locator:
         """The dialog of this title."""
         return self.page.get_by_role("dialog", name=self.said(name))
-
-    def tab(self, *names: str) -> None:
-        """Bring tabs to the front; wait until the page holds what they show."""
-        for name in names:
-            tab = self.page.get_by_role("tab", name=self.said(name), exact=True)
-            if tab.get_attribute("aria-selected") != "true":
-                tab.click()
-                self.heard()
 
     # A control is named by its field's key in the scenario file, such as "network.xi" (tests.browser.fields);
     # one that stands for no field by its label.

@@ -134,6 +134,9 @@ look.moved = async ids => {
   }
 };
 
+look.drawnNames = () => [...document.querySelectorAll('.js-plotly-plot')].flatMap(
+  p => p._fullData.filter(t => t.visible === true).map(t => t.name));
+
 look.opacity = () => Number(getComputedStyle(document.querySelector('.js-plotly-plot')).opacity);
 
 // ------------------------------------------------------------ test_page_jobs
@@ -333,9 +336,21 @@ look.broken = within => {
 
 // Rows in which the tabs of each panel stand.
 look.rows = () => [...document.querySelectorAll('[role=tablist]')].map(list => {
-  const boxes = [...list.querySelectorAll('[role=tab]')].map(tab => tab.getBoundingClientRect());
+  const tabs = [...list.querySelectorAll('[role=tab]')].filter(tab => tab.getClientRects().length > 0);
+  const boxes = tabs.map(tab => tab.getBoundingClientRect());
   const tops = boxes.map(box => Math.round(box.top));
   return new Set(tops).size;
+});
+
+// Of each strip of results its groups, from left to right: name and tabs.
+look.groups = () => [...document.querySelectorAll('[data-dock-strip]:has([data-sb-group])')].map(strip => {
+  const tabs = [...strip.children].filter(tab => tab.getClientRects().length > 0);
+  const left = tab => tab.getBoundingClientRect().left;
+  return tabs.sort((one, other) => left(one) - left(other)).reduce((groups, tab) => {
+    if (tab.dataset.sbGroup || groups.length === 0) groups.push([tab.dataset.sbGroup, []]);
+    groups.at(-1)[1].push(tab.textContent);
+    return groups;
+  }, []);
 });
 
 look.axes = () => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null)

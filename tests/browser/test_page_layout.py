@@ -92,6 +92,36 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
     look(1400, "hidden")
 
 
+def test_tabs_stand_in_groups_and_the_rest_in_a_list(sized: Bench) -> None:
+    page, more = sized.page, sized.page.locator(".sb-more-tabs")
+    wide = page.viewport_size["width"] >= WIDE_FROM_PX
+    sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
+    run, switching = ["Errors", "Spectrum", "Metrics"], ["Errors", "Spectrum", "Switching", "Metrics"]
+    network = [["Network", ["Frequency", "Poles", "Step", "Diagram"]]]
+    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare"]]
+
+    def groups(tabs: list[str]) -> list[object]:
+        below = [["Run", tabs], decide]
+        return [network, below] if wide else [[*network, *below]]
+
+    # the tab that comes with a scenario comes into its place, and leaves it
+    sized.wait_until(lambda: page.evaluate("look.groups") == groups(switching), 10.0)
+    sized.put(load_preset("sun-step"), origin="sun-step")
+    sized.wait_until(lambda: page.evaluate("look.groups") == groups(run), 10.0)
+    assert more.locator("option").all_inner_texts() == ["More", "Misprints", "Scenario"]
+    named = "() => getComputedStyle(document.querySelector('[data-sb-group=Network]'), '::before').content"
+    if wide:
+        assert "Network" in page.evaluate(named)
+    for title in ("Misprints", "Scenario"):
+        sized.tab(title)  # from the list: as long as it is in front it stands beside the others
+        strip = page.evaluate("look.groups")[0]
+        assert strip[-1][1][-1] == title and more.input_value() == ""
+    page.evaluate("() => schuler.command('tab', 'Misprints')")
+    page.get_by_role("tab", name="Misprints", exact=True, selected=True).wait_for()
+    sized.tab("Frequency")
+    assert page.evaluate("look.groups") == groups(run)
+
+
 def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:
     page = sized.page
     sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)

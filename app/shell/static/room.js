@@ -8,7 +8,8 @@
   const LEAST_PX = { plotly: 160, chart: 84 };
   const VIEWPORT = ".mantine-ScrollArea-viewport";
   // Type (px), padding (em) and, of the last, letter spacing (em): for fonts as wide as DejaVu Sans.
-  const TABS = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
+  const TYPES = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
+  const TABS = [true, false].flatMap((labelled) => TYPES.slice(0, labelled ? -2 : undefined).map((type) => ({ type, labelled })));
   const FOLDS = "details[data-sb-folds]";
   const waiting = new Set();
   const chosen = new Map(); // id of what folds -> whether the user has opened it
@@ -87,14 +88,16 @@
 
   function fit(strip) {
     if (strip.getClientRects().length === 0) return;
-    const rows = ([type, padding, spacing = 0]) => {
+    const tabs = [...strip.children].filter((tab) => tab.getClientRects().length > 0);
+    const rows = ({ type: [type, padding, spacing = 0], labelled }) => {
+      strip.toggleAttribute("data-sb-bare", !labelled); // without the names of groups (groups.js)
       strip.style.setProperty("--sb-type", `${type}px`);
       strip.style.setProperty("--sb-padding", `${padding}em`);
       strip.style.setProperty("letter-spacing", `${spacing}em`);
-      return new Set([...strip.children].map((tab) => tab.offsetTop)).size;
+      return new Set(tabs.map((tab) => tab.offsetTop)).size;
     };
     const fewest = rows(TABS.at(-1));
-    TABS.find((tabs) => rows(tabs) === fewest);
+    TABS.find((look) => rows(look) === fewest);
   }
 
   // In the next frame: what changes a size while sizes are told would be told of in vain.

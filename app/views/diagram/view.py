@@ -18,6 +18,7 @@ class DiagramView(PictureView[str]):
 
     title = Text("Diagram")
     place = "upper"
+    group = "network"
     look_for = Text(
         "Where the log enters and what the network does with it. A click on a block opens its tab."
     )

@@ -144,6 +144,7 @@ class ErrorsView(PictureView[ErrorCurves]):
 
     title = Text("Errors")
     place = "lower"
+    group = "run"
     look_for = Text(
         "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind."
     )

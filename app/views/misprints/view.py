@@ -32,6 +32,7 @@ class MisprintsView(View):
 
     title = Text("Misprints")
     place = "upper"
+    group = "more"
     look_for = Text("What a paper prints beside what its text and figures say: look where the curves part.")
 
     def __init__(self, frame: Frame) -> None:

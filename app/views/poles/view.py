@@ -37,6 +37,7 @@ class PolesView(PlotlyView):
 
     title = Text("Poles")
     place = "upper"
+    group = "network"
     look_for = Text(
         "The farther left a pole, the faster it dies away; the steeper, the more it swings. "
         "Drag the handle to move it."

@@ -25,6 +25,7 @@ class RequirementsView(PictureView[str]):
 
     title = Text("Requirements")
     place = "lower"
+    group = "decide"
     look_for = Text("Give limits in the boxes: the table says who meets them, and the plots show the limits.")
 
     def __init__(self, frame: Frame) -> None:

@@ -24,6 +24,7 @@ class TuneView(PlotlyView):
 
     title = Text("Tune")
     place = "lower"
+    group = "decide"
     look_for = Text("Let the program search the best setting; accept or discard what it proposes.")
     plots = (title,)
     above_px = 2 * CHOOSER_PX + _NOTE_PX

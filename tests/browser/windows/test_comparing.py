@@ -186,7 +186,7 @@ def test_a_click_on_the_legend_dims_hides_and_leaves_out(window: Bench) -> None:
 def test_copies_have_names_of_their_own(window: Bench) -> None:
     for _ in range(3):
         with window.next_run():
-            see(window, window.button("copy")).click()
+            see(window, window.menu("copy")).click()
     names = [method.name for method in window.session.scenario.method]
     assert names[2:] == ["complementary", "complementary 2", "complementary 3", "complementary 4"]
     for name in names:
@@ -213,7 +213,7 @@ def test_the_table_of_metrics_is_whole_rounded_aligned_and_marks_the_best(window
 
 
 def test_the_page_speaks_in_plain_words(window: Bench) -> None:
-    for tab, label in (("Method", "method"), ("View", "enlarge errors in 3D")):
+    for tab, label in (("Method", "network"), ("View", "enlarge errors in 3D")):
         window.tab(tab)
         see(window, window.box(label))
         assert read(window, window.page.locator(f"label[for='{window.id(label)}']")) == window.said(label)

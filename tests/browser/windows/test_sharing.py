@@ -173,7 +173,8 @@ def test_presentation_size_is_large_folded_and_whole(window: Bench) -> None:
         smallest, text = next(found for found in page.evaluate("look.type") if found[1] != "?")
         assert smallest >= height / ROWS, (tab, text)
         assert page.evaluate("look.textOutside") == [], tab
-    hidden = {"scenario", "methods", "as text", "duration (h)", "enlarge errors in 3D"}
+    hidden = {"scenario", "duration (h)", "enlarge errors in 3D"}
+    assert page.locator(".sb-chip").count() == 3 and page.locator(".sb-menu, .sb-plus").count() == 0
     assert not hidden & set(page.evaluate("look.shownLabels"))
     for folded in ("[data-dock-region=left] [role=tablist]", "[data-command=undo]"):
         assert page.locator(folded).is_hidden()
