@@ -94,11 +94,11 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
 
 def test_tabs_stand_in_groups_and_the_rest_in_a_list(sized: Bench) -> None:
     page, more = sized.page, sized.page.locator(".sb-more-tabs")
-    wide = page.viewport_size["width"] >= WIDE_FROM_PX
+    wide = layout_for(*page.viewport_size.values()).two
     sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
     run, switching = ["Errors", "Spectrum", "Metrics"], ["Errors", "Spectrum", "Switching", "Metrics"]
     network = [["Network", ["Frequency", "Poles", "Step", "Diagram"]]]
-    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare"]]
+    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare", "Sweep"]]
 
     def groups(tabs: list[str]) -> list[object]:
         below = [["Run", tabs], decide]

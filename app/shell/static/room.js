@@ -35,7 +35,8 @@
   const TOOL = ':is([data-sb-kind="select"], [data-sb-kind="number"], [data-sb-kind="other"], [data-sb-kind="mark"])';
   function raise(viewport) {
     const strip = viewport.closest("[data-dock-group]")?.querySelector(":scope > [data-dock-strip]");
-    const area = strip?.nextElementSibling;
+    const more = strip?.parentElement.querySelector(":scope > .sb-more-tabs"); // groups.js
+    const area = (more ?? strip)?.nextElementSibling;
     if (!area) return;
     const tools = [...viewport.querySelectorAll(`[data-sb-holds~="tools"] > ${TOOL}`)];
     const tabs = [...(strip?.children ?? [])];
@@ -45,6 +46,7 @@
     area.dataset.sbUp = "";
     area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
     area.style.setProperty("--sb-left-px", `${tabs.at(-1).offsetLeft + tabs.at(-1).offsetWidth - tabs[0].offsetLeft + 10}px`);
+    area.style.setProperty("--sb-right-px", `${(more?.offsetWidth ?? 0) + 8}px`);
     const rows = tools.map((tool) => Math.round(tool.getBoundingClientRect().top));
     if (Math.max(...rows) - Math.min(...rows) > strip.offsetHeight / 2 || viewport.scrollWidth > viewport.clientWidth) area.removeAttribute("data-sb-up");
   }
