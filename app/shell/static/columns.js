@@ -128,11 +128,19 @@
   });
   addEventListener("resize", show);
 
-  // ------------------------------------------------------------ a window in which nothing has room (page.css)
+  // ------------------------------------------------------------ a window in which nothing has room
+
+  // By itself: on a phone viser folds the panel in which our style sheet comes.
 
   const small = document.createElement("p");
   small.id = "sb-too-small";
   small.textContent = "This page needs a window at least 700 px wide: open it on a tablet or a computer.";
+  small.style.cssText = "position:fixed;z-index:260;inset:0;place-items:center;margin:0;padding:24px;text-align:center;" +
+    "background:#fff;color:#243b53;font:18px/1.4 system-ui,sans-serif";
+  const narrow = matchMedia("(max-width: 699px)");
+  const tell = () => (small.style.display = narrow.matches ? "grid" : "none");
+  narrow.addEventListener("change", tell);
+  tell();
   document.documentElement.append(small);
 
   // ------------------------------------------------------------ viser's own ways to take a panel apart
