@@ -38,6 +38,8 @@
 
   // ------------------------------------------------------------ the dividers
 
+  const place = document.createElement("section"); // what is outside all landmarks is not found
+  place.ariaLabel = "Dividers of the page";
   const region = (side) => document.querySelector(`[data-dock-region="${side}"]`)?.getBoundingClientRect();
   const panels = () => [...document.querySelectorAll('[data-dock-region="right"] [data-dock-leaf]')].map((leaf) => leaf.getBoundingClientRect());
   const clamp = (value, low, high) => Math.round(Math.min(Math.max(value, low), high));
@@ -79,8 +81,8 @@
 
   for (const { line, key, upright, at, set } of DIVIDERS) {
     let held = false;
-    const place = (event) => (upright ? event.clientX : event.clientY);
-    const move = (event) => (line.style[upright ? "left" : "top"] = `${place(event)}px`);
+    const pointed = (event) => (upright ? event.clientX : event.clientY);
+    const move = (event) => (line.style[upright ? "left" : "top"] = `${pointed(event)}px`);
     line.addEventListener("pointerdown", (event) => {
       held = true;
       line.setPointerCapture(event.pointerId);
@@ -91,7 +93,7 @@
     line.addEventListener("pointermove", (event) => held && move(event));
     for (const kind of ["pointerup", "pointercancel"]) {
       line.addEventListener(kind, (event) => {
-        if (held && kind === "pointerup" && Math.abs(place(event) - at()) > 2) keep(set(place(event)));
+        if (held && kind === "pointerup" && Math.abs(pointed(event) - at()) > 2) keep(set(pointed(event)));
         held = false;
         line.classList.remove("sb-held");
         show();
@@ -115,7 +117,8 @@
       const here = at();
       line.hidden = here === undefined || right === undefined || (key === "view" && kept.mode === "rail");
       if (line.hidden || line.classList.contains("sb-held")) continue;
-      if (line.parentElement === null) document.body.append(line);
+      if (line.parentElement === null) place.append(line);
+      if (place.parentElement === null) document.body.append(place);
       Object.assign(line.style, upright ? { left: `${here}px` } : { top: `${here}px`, left: `${right.left}px` });
       line.setAttribute("aria-valuenow", Math.round(here));
       line.setAttribute("aria-valuemax", upright ? innerWidth : innerHeight);
