@@ -60,6 +60,7 @@ window.schuler.words = {
   "Plot over time": "时域图",
   "Map in 3D: the true track, the computed tracks and the ship. The tab Metrics has the numbers.": "三维地图：真实航迹、计算航迹和船。数值见“性能”页。",
   "{0}: value with its unit, Enter takes it over": "{0}：带单位的数值，按 Enter 采用",
+  "Dividers of the page": "页面分隔条",
   "Width of the controls": "控件栏宽度",
   "Width of the 3D view": "三维视图宽度",
   "Height of the upper plots": "上方图的高度",

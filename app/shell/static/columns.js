@@ -38,6 +38,8 @@
 
   // ------------------------------------------------------------ the dividers
 
+  const place = document.createElement("section"); // what is outside all landmarks is not found
+  place.ariaLabel = "Dividers of the page";
   const region = (side) => document.querySelector(`[data-dock-region="${side}"]`)?.getBoundingClientRect();
   const panels = () => [...document.querySelectorAll('[data-dock-region="right"] [data-dock-leaf]')].map((leaf) => leaf.getBoundingClientRect());
   const clamp = (value, low, high) => Math.round(Math.min(Math.max(value, low), high));
@@ -79,8 +81,8 @@
 
   for (const { line, key, upright, at, set } of DIVIDERS) {
     let held = false;
-    const place = (event) => (upright ? event.clientX : event.clientY);
-    const move = (event) => (line.style[upright ? "left" : "top"] = `${place(event)}px`);
+    const pointed = (event) => (upright ? event.clientX : event.clientY);
+    const move = (event) => (line.style[upright ? "left" : "top"] = `${pointed(event)}px`);
     line.addEventListener("pointerdown", (event) => {
       held = true;
       line.setPointerCapture(event.pointerId);
@@ -91,7 +93,7 @@
     line.addEventListener("pointermove", (event) => held && move(event));
     for (const kind of ["pointerup", "pointercancel"]) {
       line.addEventListener(kind, (event) => {
-        if (held && kind === "pointerup" && Math.abs(place(event) - at()) > 2) keep(set(place(event)));
+        if (held && kind === "pointerup" && Math.abs(pointed(event) - at()) > 2) keep(set(pointed(event)));
         held = false;
         line.classList.remove("sb-held");
         show();
@@ -115,7 +117,8 @@
       const here = at();
       line.hidden = here === undefined || right === undefined || (key === "view" && kept.mode === "rail");
       if (line.hidden || line.classList.contains("sb-held")) continue;
-      if (line.parentElement === null) document.body.append(line);
+      if (line.parentElement === null) place.append(line);
+      if (place.parentElement === null) document.body.append(place);
       Object.assign(line.style, upright ? { left: `${here}px` } : { top: `${here}px`, left: `${right.left}px` });
       line.setAttribute("aria-valuenow", Math.round(here));
       line.setAttribute("aria-valuemax", upright ? innerWidth : innerHeight);
@@ -128,11 +131,19 @@
   });
   addEventListener("resize", show);
 
-  // ------------------------------------------------------------ a window in which nothing has room (page.css)
+  // ------------------------------------------------------------ a window in which nothing has room
+
+  // By itself: on a phone viser folds the panel in which our style sheet comes.
 
   const small = document.createElement("p");
   small.id = "sb-too-small";
   small.textContent = "This page needs a window at least 700 px wide: open it on a tablet or a computer.";
+  small.style.cssText = "position:fixed;z-index:260;inset:0;place-items:center;margin:0;padding:24px;text-align:center;" +
+    "background:#fff;color:#243b53;font:18px/1.4 system-ui,sans-serif";
+  const narrow = matchMedia("(max-width: 699px)");
+  const tell = () => (small.style.display = narrow.matches ? "grid" : "none");
+  narrow.addEventListener("change", tell);
+  tell();
   document.documentElement.append(small);
 
   // ------------------------------------------------------------ viser's own ways to take a panel apart
