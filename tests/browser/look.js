@@ -119,7 +119,8 @@ look.reached = () => {
 look.tooWide = () => [...document.querySelectorAll('.sb-lesson')].map(e => e.scrollWidth - e.clientWidth);
 
 look.tabRows = () => {
-  const boxes = [...document.querySelectorAll('[role=tab]')].map(t => t.getBoundingClientRect());
+  const tabs = [...document.querySelectorAll('[role=tab]')].filter(t => t.getClientRects().length > 0);
+  const boxes = tabs.map(t => t.getBoundingClientRect());
   return new Set(boxes.filter(b => b.left < innerWidth / 3).map(b => Math.round(b.top))).size;
 };
 

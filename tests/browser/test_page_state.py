@@ -254,8 +254,12 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     assert (other.digest, other.value(SIGMA)) == (fresh.digest, 0.0123)
     other.page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
     other.tab("Requirements")
-    limit = other.page.get_by_text("tilt overshoot ≤ (%)", exact=True).locator("xpath=ancestor::div[2]")
-    assert limit.locator("input").input_value() == "36"
+    assert other.page.get_by_label("tilt overshoot ≤ (%)", exact=True).input_value() == "36"
+    # rows without a limit are folded away
+    folded = other.page.get_by_label("damping ratio ≥", exact=True)
+    assert folded.is_hidden()
+    other.button("add a limit").click()
+    folded.wait_for()
     # a change in one window is seen in the other
     fresh.settle()
     fresh.type(XI, "0.55")

@@ -4,7 +4,7 @@
 (() => {
   const KINDS = { slider: "Slider", number: "NumberInput", select: "Select", text: "TextInput" };
   const HIDDEN = ["page state", "page command", "page painted"];
-  const CONTAINERS = ["topbar", "tools", "limits", "compare"];
+  const CONTAINERS = ["topbar", "tools", "compare"];
   const WIDE = ".sb-pins, .sb-no-pins, .sb-wide, .sb-look, .sb-legend, .mantine-Progress-root";
 
   // The child of ``container`` in which ``inner`` stands.
