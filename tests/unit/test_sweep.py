@@ -97,13 +97,19 @@ def test_the_picture_has_a_curve_a_method_and_a_line_at_the_present_value(ship: 
     names = [method.name for method in ship.method]
     known = {key: one for key, one in found.items() if one is not None}
     picture = sweep_figure(known, "velocity_max_mps", names)
-    assert [trace["name"] for trace in picture["data"]] == [*names, *names]
-    assert [bool(trace["showlegend"]) for trace in picture["data"]] == [True] * 3 + [False] * 3
+    curves = [trace for trace in picture["data"] if "name" in trace]
+    assert [trace["name"] for trace in curves] == [*names, *names]
+    assert [bool(trace["showlegend"]) for trace in curves] == [True] * 3 + [False] * 3
     metrics = known["latitude"].metrics
     assert metrics is not None
-    assert picture["data"][1]["y"] == list(metrics["velocity_max_mps"][1])
+    assert curves[1]["y"] == list(metrics["velocity_max_mps"][1])
     lines = [shape["x0"] for shape in picture["layout"]["shapes"]]
     assert lines == [ship.site.lat_deg, 1.0]
+
+
+def test_an_empty_plot_keeps_its_place() -> None:
+    data = sweep_figure({}, "tilt_rms_arcsec", ["free"])["data"]
+    assert [trace["xaxis"] for trace in data] == ["x", "x2", "x3", "x4"]
 
 
 def test_one_quantity_after_the_other_is_shown_and_a_change_makes_them_old(

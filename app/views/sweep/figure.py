@@ -26,6 +26,7 @@ _BETWEEN_ROWS_PX = 72.0
 _WIDE = 20.0
 """Largest over smallest value from which a plot is logarithmic."""
 _NOT_VARIED, _LONGEST_WORDS = Text("not varied"), 56
+_NOTHING = {"type": "scatter", "x": [None], "y": [None], "showlegend": False, "hoverinfo": "skip"}
 _EMPTY = Text("Sweep: one click runs all methods over these four.")
 
 
@@ -77,7 +78,8 @@ def sweep_figure(
             [0.0, share] if left else [1.0 - share, 1.0],
             [0.5 + 0.5 * gap, 1.0] if upper else [0.0, 0.5 - 0.5 * gap],
         )
-        data += _panel(layout, known.get(key), key, metric, methods, suffix, domains, not data)
+        named = not any(trace["showlegend"] for trace in data)
+        data += _panel(layout, known.get(key), key, metric, methods, suffix, domains, named)
     if not known:
         layout["annotations"].append(
             style.text(0.5, 0.5, _EMPTY, xref="paper", yref="paper", font={"size": 14, "color": style.MUTED})
@@ -119,7 +121,8 @@ def _panel(
                 style.text(0.5, 0.5, words, **place, font={"size": 13, "color": style.MUTED})
             )
         layout["annotations"].append(style.panel_title(title, suffix))
-        return []
+        # plotly lays out no axis that has no trace
+        return [_NOTHING | {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}]
     rows = found.metrics[metric]
     numbers = [value for values in rows for value in values if value is not None]
     positive = [value for value in numbers if value > 0.0]
