@@ -59,6 +59,7 @@ _READERS = (
     "schuler_bench.session.uploads",
     "navcore.checks.file",
     "navcore.checks.imu",
+    "navcore.checks.map_guess",
     "navcore.io.csv",
     "navcore.io.nmea_recording",
     "navcore.io.tables",

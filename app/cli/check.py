@@ -93,11 +93,12 @@ def check(file: str, map_file: str | None = None) -> FileReport:
     from navcore.checks.file import FileReport, check_file
     from navcore.checks.imu import IMU_CHECKER, check_mapped
     from navcore.foundation.errors import InputError
+    from navcore.io.column_map import map_beside
     from navcore.scenario.file import presets
     from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
 
-    if map_file is not None:
-        return check_mapped(file, map_file)
+    if mapped := map_file or map_beside(file):
+        return check_mapped(file, mapped)
     if file in presets() and not Path(file).exists():
         try:
             return check_scenario(file)

@@ -16,7 +16,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
-from navcore.io.column_map import read_map
+from navcore.io.column_map import map_beside, read_map
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.mechanization.strapdown.run import turned_by
@@ -89,7 +89,8 @@ def recorded_imu(scenario: Scenario, start_utc: float | None = None) -> Recorded
         Unreadable, gaps, wrong axes, shorter than skipped part, alignment and run together.
     """
     imu, aligned = scenario.imu, scenario.alignment.kind == "compass"
-    column_map = read_map(imu.map, "imu.map") if imu.map else None
+    map_file = imu.map or map_beside(imu.file or "")
+    column_map = read_map(map_file, "imu.map") if map_file else None
     record: ImuRecord = kept(
         (Text("imu record"), recorded_state(imu), imu.axes),
         lambda: guarded.call("imu.file", read_imu, imu.file or "", imu.axes, column_map),

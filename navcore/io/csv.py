@@ -49,7 +49,7 @@ def recognises(candidate: Candidate) -> bool:
     if known_columns(header[:MOST_COLUMNS]):
         return True
     following = [split_line(line, separator) for line in head if not line.startswith(_COMMENTS)][1:6]
-    alike = [row for row in following if len(row) == len(header) and any(map(_is_number, row))]
+    alike = [row for row in following if len(row) == len(header) and _holds_number(row, separator)]
     return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
 
@@ -106,6 +106,11 @@ def layout(text: str) -> tuple[str, str, list[str]]:
     return _layout(_head(text))
 
 
+def _holds_number(row: list[str], separator: str) -> bool:
+    """Whether a cell is a number, also with a decimal comma."""
+    return any(_is_number(cell if separator == "," else cell.replace(",", ".")) for cell in row)
+
+
 def _is_number(cell: str) -> bool:
     try:
         float(cell)
@@ -125,7 +130,7 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
         clock = column_map.clocks(where, header)
         rows = Rows(header, {stem: column for stem, (column, _) in found.items()}, decimal=column_map.decimal)
         rows.columns[UTC] = Column(clock[0], column_map.time.columns[0], UTC)
-        rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign < 0.0}
+        rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign != 1.0}
         if pairs := pair_faults(where, rows.columns):
             raise InputError(pairs)
     _refuse_size(where, text, len(rows.columns))

@@ -57,7 +57,7 @@ class ImuColumn:
     unknown : str
         What stands as its unit and is not understood.
     sign : float
-        1 or -1, by which the numbers are multiplied.
+        1 or -1, or the factor of a map, by which the numbers are multiplied.
     """
 
     index: int

@@ -31,6 +31,6 @@ class Rows:
     """Those that do."""
     decimal: str = "."
     signs: dict[str, float] = field(default_factory=dict)
-    """-1 for the columns whose numbers a map turns around."""
+    """Factors of the columns whose numbers a map turns around or scales."""
     skipped: list[int] = field(default_factory=list)
     """Numbers of the rows that a map lets be left out."""
