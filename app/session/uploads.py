@@ -14,14 +14,9 @@ from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
-<<<<<<< HEAD
-from navcore.foundation.units import DEG, HOUR
-from navcore.motion.truth import LAT, LON
-from navcore.scenario.file import FILE_FIELDS, names_files
-=======
 from navcore.io.column_map import map_beside, parse_map
 from navcore.io.recording import NO_TABLE
->>>>>>> maps
+from navcore.scenario.file import FILE_FIELDS, names_files
 from navcore.scenario.model import Scenario
 from schuler_bench.http.limits import MIB, Limits
 from schuler_bench.session.folder import TEMPORARY, opened, remove_files, temporary_name
