@@ -126,7 +126,7 @@ def test_a_value_is_taken_in_one_piece_after_a_key_that_types_nothing(fresh: Ben
 
 def test_commands_are_found_filtered_and_carried_out(fresh: Bench, session: Session) -> None:
     page = fresh.page
-    fresh.button("Commands").click()
+    page.locator("[data-palette]").click()
     dialog, search = page.get_by_role("dialog"), page.get_by_placeholder("Search commands...")
     dialog.wait_for()
     page.wait_for_function("() => document.activeElement?.placeholder === 'Search commands...'")

@@ -91,7 +91,7 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
         said = Text("<i>{words}</i>", words=ended) if ended else ""
         yield Text(
             '<div class="sb-result" data-state="{state}" data-edited="{pressed}" '
-            'style="--color:{color}"><button class="sb-eye" '
+            'style="--color:{color}"><button class="sb-tint" '
             'data-command="{legend} {name:html}" title="{hint}" aria-label="{name:html}: {hint}"></button>'
             '<button class="sb-edit" data-command="{edit} {place}" aria-pressed="{pressed}" '
             'title="Edit {name:html}"><b>{name:html}</b>{said}{numbers}</button></div>',

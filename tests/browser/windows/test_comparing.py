@@ -168,7 +168,7 @@ def test_a_click_on_the_legend_dims_hides_and_leaves_out(window: Bench) -> None:
       .map(c => [c.scales.y.max, c.series[{1 + place}].show])[0]"""
     drawn = page.evaluate(top)[0]
     for state in ("unscaled", "dimmed", "hidden"):
-        see(window, cards.nth(place).locator(".sb-eye")).click()
+        see(window, cards.nth(place).locator(".sb-tint")).click()
         page.wait_for_selector(f".sb-result[data-state={state}]")
         window.catch_up()
         assert window.session.display.state_of(names[place]) == state
@@ -179,7 +179,7 @@ def test_a_click_on_the_legend_dims_hides_and_leaves_out(window: Bench) -> None:
             f"([top, state]) => (([now, show]) => now {condition})(({top})() ?? [])", arg=[drawn, state]
         )
     assert window.line(f"/track/method{place}") is None and window.line(f"/track/method{place - 1}")
-    cards.nth(place).locator(".sb-eye").click()  # once more, and it is shown again
+    cards.nth(place).locator(".sb-tint").click()  # once more, and it is shown again
     window.wait_until(lambda: window.line(f"/track/method{place}") is not None)
 
 
