@@ -239,7 +239,7 @@ _MENU = Text(
     'title="Lessons of five minutes">Learn</button><button data-command="{start}" title="The '
     'card that a new visitor sees">Start</button><hr><button data-command="tab View" '
     'title="Units, bands, export, language, dark page, size">View</button><button data-command="keys" '
-    'title="What the keys do">Keys</button><button data-viewer title="Of the 3D view, by viser; again '
+    'title="What the keys do">Keys</button><button data-viewer title="Of the 3D view itself; again '
     'to go back">3D settings</button></nav></div>',
     scenarios=SCENARIOS,
     network_cards=NETWORK_CARDS,
