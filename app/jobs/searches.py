@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable
 
 from navcore.engine.run import Run
-from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Profiles, Tuner
 from schuler_bench.jobs.judge import Judge
 from schuler_bench.jobs.sweeper import Sweeper
 from schuler_bench.jobs.why import Explainer
@@ -31,6 +31,8 @@ class Searches:
         Error budget along the run.
     designer : Designer
         Best setting of a method.
+    profiles : Profiles
+        Objective over each parameter of a method.
     fronts : Fronts
         Pareto fronts of all networks.
     limits : Limits
@@ -48,6 +50,7 @@ class Searches:
         self.tuner = Tuner(self._tell, name)
         self.budgeter = Budgeter(self._tell, name)
         self.designer = Designer(self._tell, name)
+        self.profiles = Profiles(self._tell, name)
         self.fronts = Fronts(self._tell, name)
         self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
@@ -57,6 +60,7 @@ class Searches:
             self.tuner,
             self.budgeter,
             self.designer,
+            self.profiles,
             self.fronts,
             self.limits,
             self.judge,
