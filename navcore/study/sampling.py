@@ -24,7 +24,7 @@ def _saltelli_point(sample: Sample, dimensions: int, number: int) -> np.ndarray:
     Saltelli et al. 2010, table 1, as `scipy.stats.sobol_indices` takes it.
     """
     row, place = divmod(number, dimensions + 2)
-    both = unit_point(_plain(sample), 2 * dimensions, row)
+    both = unit_point(_plain(sample), 2 * dimensions, row)  # pyright: ignore[reportArgumentType]
     first, second = both[:dimensions], both[dimensions:]
     if place < 2:
         return (first, second)[place]
