@@ -14,6 +14,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.kernel_files import replacing
 from navcore.foundation.text import Text
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, known_columns
+from navcore.io.columns import MOST_CELLS, MOST_COLUMNS
 from navcore.io.containers import MOST_UNPACKED_BYTES, Container, is_container, open_container
 from navcore.io.csv import layout
 from navcore.io.imu_columns import AXES, DIMENSIONS, imu_columns
@@ -76,7 +77,11 @@ class Preview(NamedTuple):
 
 def preview(text: str) -> Preview:
     """Header, first rows and a sample of the numbers of a text table."""
+    if text.count("\n") > MOST_CELLS // _FEWEST_COLUMNS:
+        return Preview((), (), (), "")
     separator, line, header = imu_layout(text) if is_imu_table(text) else layout(text)
+    if len(header) > MOST_COLUMNS:
+        return Preview((), (), (), "")
     names = tuple(name.strip() for name in header)
     body = text[text.find(line) + len(line) :].splitlines()[1:] if line else []
     every = max(1, len(body) // MOST_SAMPLES)
@@ -101,7 +106,10 @@ def _of_container(held: Container) -> Preview:
     parts = list(held.parts.values())[:_MOST_SHOWN]
     numbers = [place for place, part in enumerate(parts) if part.is_number]
     texts = [place for place, part in enumerate(parts) if not part.is_number and part.is_time]
-    read = held.fetch(numbers, texts, most_cells=MOST_UNPACKED_BYTES // 8) if numbers or texts else {}
+    if len(numbers) + len(texts) < _FEWEST_COLUMNS:
+        return Preview((), (), (), "")
+    most = MOST_UNPACKED_BYTES // 8 if is_imu_names(held.names) else MOST_CELLS
+    read = held.fetch(numbers, texts, most_cells=most)
     cells = [
         [str(value) for value in read[place][0][:MOST_ROWS]] if place in read else []
         for place in range(len(parts))

@@ -7,7 +7,7 @@ import numpy as np
 from navcore.foundation.earth import WGS84
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
-from navcore.io.plausible import KNOT_SLIPS, slip_of
+from navcore.io.plausible import KNOT_SLIPS, MOST_LEGS, slip_of
 from navcore.io.series import Recording, Series
 
 LARGEST_DRIFT = 45.0 * DEG
@@ -77,7 +77,8 @@ def _track(position: Series | None) -> Way | None:
     if position is None or position.time_s.size < _FEWEST:
         return None
     time_s = position.time_s
-    leg_s = max(min(_LEG_S, float(np.ptp(time_s)) / _FEWEST_LEGS), position.interval_s)
+    span_s = float(np.ptp(time_s))
+    leg_s = max(min(_LEG_S, span_s / _FEWEST_LEGS), position.interval_s, span_s / MOST_LEGS)
     starts = np.searchsorted(time_s, np.arange(time_s[0], time_s[-1], leg_s))
     starts = np.unique(starts[starts < time_s.size])
     lat, lon = position.values[starts, 0], np.unwrap(position.values[starts, 1])

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from navcore.checks import map_guess
+from navcore.checks.file import check_log
 from navcore.checks.imu import check_mapped
 from navcore.foundation.errors import InputError
 from navcore.io.recording import read_recording
@@ -31,6 +32,7 @@ BAD: dict[str, tuple[bytes, str]] = {
         "no column of a quantity; columns found: t_s, pressure",
     ),
     "a cut row": (b"t_s,speed_mps\n1,2\n2\n3,4\n4,5\n", "row 3: has 1 cells, the header 2"),
+    "a time past all calendars": (b"t_s,speed_mps\n1,2\n9e11,3\n", "must be a number from -6e+10 to 2.5e+11"),
     "time backwards": (b"t_s,speed_mps\n1,2\n0,3\n3,4\n", "row 3: t_s: time runs backwards by 1 s"),
 }
 
@@ -73,3 +75,13 @@ def test_a_map_is_not_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     with pytest.raises(InputError, match="cannot be written"):
         map_guess.write_map(str(tmp_path / "log.csv"), str(tmp_path / "m.toml"))
     assert (tmp_path / "m.toml").read_text() == "before"
+
+
+def test_fixes_that_lie_years_apart_take_no_time(tmp_path: Path) -> None:
+    """Found by fuzzing: a leg of 10 s each, from 1970 on, took seconds and gigabytes."""
+    rows = [(0, 1.0), (1, 1.0), (2, 1.0), *((2e11 + k, 1.0) for k in range(9))]
+    text = "t_s,lat_deg,lon_deg,speed_mps\n" + "".join(f"{t:.0f},{lat},2.0,5.0\n" for t, lat in rows)
+    (tmp_path / "log.csv").write_text(text)
+    begin = time.process_time()
+    check_log(tmp_path / "log.csv")
+    assert time.process_time() - begin < 5.0
