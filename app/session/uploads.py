@@ -239,6 +239,10 @@ def _map_beside(path: Path) -> str:
 
 def _own(where: str, stored: Path, path: Path) -> str:
     """A fault's place with the file's own name in place of that under which it is stored."""
+    if isinstance(where, Text):
+        values = where.values.items()
+        own = {name: _own(value, stored, path) if isinstance(value, str) else value for name, value in values}
+        return Text(*where.forms, **own)
     return where.replace(str(stored), path.name).replace(stored.name, path.name)
 
 

@@ -61,7 +61,7 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         sized.tab(tab)
         page.wait_for_function("look.drawn")
     filled = [found for found in page.evaluate("look.filled") if found is not None]
-    panels = 1 + layout_for(**size).two
+    panels = 1 + layout_for(size["width"], size["height"]).two
     assert filled and min(filled) >= 0.9 * (size["height"] - BAR_PX - STRIP_PX) / panels - 60
     assert page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in page.locator("pre").first.inner_text()
@@ -94,7 +94,7 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
 
 def test_tabs_stand_in_groups_and_the_rest_in_a_list(sized: Bench) -> None:
     page, more = sized.page, sized.page.locator(".sb-more-tabs")
-    wide = layout_for(*page.viewport_size.values()).two
+    wide = layout_for(page.viewport_size["width"], page.viewport_size["height"]).two
     sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
     run, switching = ["Errors", "Spectrum", "Metrics"], ["Errors", "Spectrum", "Switching", "Metrics"]
     network = [["Network", ["Frequency", "Poles", "Step", "Diagram"]]]
