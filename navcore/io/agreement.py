@@ -24,6 +24,8 @@ _WIDEST_LAG_S = 3700.0
 _SHARE = 1.0 / 3.0
 """Of the time that two streams share, by which they are shifted at most."""
 _SURE = 4.0
+_KNOWN = 0.05
+"""Share of a factor up to which it may be unsure; tides and a straight course leave it unsure by more."""
 _WORST_CONDITION = 30.0
 _ALIKE = 30
 """Samples whose residuals are taken for one: currents and steering change slowly."""
@@ -94,7 +96,8 @@ def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.n
 
 def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[str]:
     for what, factor, deviation in zip(_WORDS, factors, spread, strict=False):
-        if abs(factor - 1.0) <= max(LARGEST_SCALE_ERROR, _SURE * deviation):
+        known = deviation < _KNOWN * max(abs(factor), 1.0)
+        if not known or abs(factor - 1.0) <= max(LARGEST_SCALE_ERROR, _SURE * deviation):
             continue
         slip = Text("the wrong sign")
         if factor > 0.0:

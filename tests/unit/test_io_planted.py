@@ -4,7 +4,11 @@ from pathlib import Path
 
 import pytest
 
+from navcore.motion.track import TrackMotion
+from navcore.sensors.recorded import recording_notices
+from navcore.sensors.reference import Reference
 from tests.planted import FORMATS, IMU, LARGE, Case, cases, moved, told
+from tests.recordings import OWN_SHIP
 
 ALL = [case for case in cases() if moved(case) > LARGE or case.column == "time"]
 
@@ -12,6 +16,11 @@ ALL = [case for case in cases() if moved(case) > LARGE or case.column == "time"]
 @pytest.mark.parametrize("form", [*FORMATS, IMU])
 def test_nothing_is_told_of_a_good_recording(form: str, tmp_path: Path) -> None:
     assert told(Case(form), tmp_path) == []
+
+
+def test_nothing_is_told_of_a_real_ship_that_hardly_turns() -> None:
+    motion, log = TrackMotion(file=OWN_SHIP.track), Reference(kind="file", file=OWN_SHIP.log, frame="body")
+    assert [words for words in recording_notices(motion, log) if "agrees" in words or "late" in words] == []
 
 
 def test_there_are_at_least_300_combinations() -> None:
