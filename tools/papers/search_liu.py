@@ -196,7 +196,8 @@ def _tables(runs: Runs) -> Numbers:
                     )
                     for e in by_seed
                 ]
-                better = 20.0 * np.mean([e["constant"][0] < e["free"][0] for e in by_seed])
+                pairs = [(e["constant"][0], e["free"][0]) for e in by_seed]
+                better = 20.0 * np.mean([constant < undamped for constant, undamped in pairs])
                 setting = (
                     f"{standing} m/s standing, changes {size} times as large, gyros of {gyro} deg/h, "
                     f"traditional switched {'at once' if name == 'hard' else 'by Liu 19'}"
