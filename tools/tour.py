@@ -105,8 +105,7 @@ def _preset(bench: Bench, take: Film) -> None:
     before = bench.run
     bench.page.get_by_role("option", name="zha-external", exact=True).click()
     bench.wait_for_run(before)
-    bench.page.locator("#sb-strip .sb-edit", has_text="fast (compass)").click()
-    bench.settle()
+    bench.choose("method", "fast (compass)")
     bench.tab("Errors")
     take.shoot(1500)
 

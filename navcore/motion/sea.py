@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from navcore.foundation.units import STANDARD_GRAVITY
-
+STANDARD_GRAVITY = 9.80665
 LOWEST, HIGHEST = 0.5, 3.0
 """Band of the spectrum that is used, as parts of its peak frequency: 98 % of the energy lies in it."""
 _PEAKEDNESS = 1.25

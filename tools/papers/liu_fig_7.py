@@ -18,7 +18,6 @@ from tools.papers.liu_switching import (
 )
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs
-from tools.papers.search_liu import FIG_7_SEARCH
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -87,6 +86,5 @@ FIGURE_7 = Exhibit(
         ),
     ),
     tables=(_fig_7_table,),
-    search=FIG_7_SEARCH,
     draw=_draw_fig_7,
 )

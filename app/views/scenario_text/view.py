@@ -10,8 +10,7 @@ class ScenarioTextView(PictureView[str]):
     """The text alone."""
 
     title = Text("Scenario")
-    place = "upper"
-    group = "more"
+    place = "lower"
     look_for = Text("The scenario as a file: what the command line and a colleague need to repeat this run.")
 
     def build(self, tab: Tab) -> None:
