@@ -44,11 +44,8 @@ server.wait()
 print("left", flush=True)
 """
 NEVER_DONE = 'server.stop = lambda: (print("stopping", flush=True), time.sleep(60))\nserver.wait()'
-HANDED_ELSEWHERE = """
-    time.sleep(0.3)
-    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
-    return
-    print(server.port"""
+ANNOUNCEMENT = "print(server.port, flush=True)"
+HANDED_ELSEWHERE = "time.sleep(0.3); signal.pthread_kill(threading.get_ident(), signal.SIGTERM)"
 BUSY_PORT = """
 import sys
 from schuler_bench.http.server import start
@@ -89,7 +86,7 @@ def test_signal_ends_the_process_in_time_and_quietly(number: signal.Signals) -> 
 
 
 def test_signal_that_another_thread_receives_ends_the_process_too() -> None:
-    with process(PROGRAM.replace("    print(server.port", HANDED_ELSEWHERE)) as child:
+    with process(PROGRAM.replace(ANNOUNCEMENT, HANDED_ELSEWHERE)) as child:
         out, errors = child.communicate(timeout=10)
         assert (child.returncode, out, errors) == (0, "left\n", "")
 
