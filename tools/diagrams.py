@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+from navcore.law.policy.variation import Variation
 from navcore.scenario.model import Scenario
 from schuler_bench.plots import style
 from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.membership import membership_svg
 from schuler_bench.views.diagram.svg import diagram_svg
 
 FOLDER = Path(__file__).parents[1] / "docs" / "diagrams"
@@ -34,11 +36,17 @@ def drawn(name: str) -> str:
     return f"{diagram_svg(diagram(scenario, 0), style.method_color(0), State(), commands=False)}\n"
 
 
+def memberships() -> str:
+    """SVG of Liu's membership functions (his figure 8), with the limits that he prints."""
+    return f"{membership_svg(Variation())}\n"
+
+
 def main() -> None:
     """Write all files."""
     FOLDER.mkdir(exist_ok=True)
     for name in METHODS:
         (FOLDER / f"{name}.svg").write_text(drawn(name), encoding="utf-8")
+    (FOLDER / "membership.svg").write_text(memberships(), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -105,7 +105,8 @@ def _preset(bench: Bench, take: Film) -> None:
     before = bench.run
     bench.page.get_by_role("option", name="zha-external", exact=True).click()
     bench.wait_for_run(before)
-    bench.choose("method", "fast (compass)")
+    bench.page.locator("#sb-strip .sb-edit", has_text="fast (compass)").click()
+    bench.settle()
     bench.tab("Errors")
     take.shoot(1500)
 

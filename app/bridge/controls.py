@@ -204,3 +204,14 @@ def id_of(handle: Any) -> str:
 def control_with(gui: viser.GuiApi, id: str) -> Any:
     """Return the handle of a client's control from its id, None when there is none."""
     return gui._gui_input_handle_from_uuid.get(id)
+
+
+def rail_style(left_px: int, right_px: int) -> str:
+    """Style sheet that gives the docked panels exactly these widths: viser leaves 120 px between them."""
+    return (
+        f"<style>[data-dock-root] > :first-child {{ inset: 0 {right_px}px 0 {left_px}px !important; }}"
+        "[data-dock-root] > :first-child > * { visibility: hidden; }"
+        f"[data-dock-region=left] {{ width: {left_px}px !important; }}"
+        f"[data-dock-region=right] {{ width: {right_px}px !important; }}"
+        "[data-dock-region] > div > div { width: 100% !important; }</style>"
+    )

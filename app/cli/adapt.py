@@ -46,6 +46,7 @@ class AdaptCommand:
         """Search and print; 3 when it was stopped."""
         from navcore.design.sun import sun_scenario, tune_table, with_table
         from navcore.foundation.errors import Fault, InputError
+        from navcore.foundation.out import writing
         from navcore.scenario.file import load, to_toml
         from schuler_bench.cli.progress import working
 
@@ -59,11 +60,8 @@ class AdaptCommand:
             say(f"{self.scenario or 'adapt'}: stopped")
             return 3
         if self.out is not None:
-            try:
+            with writing(self.out):
                 self.out.write_text(to_toml(with_table(scenario, found)), encoding="utf-8")
-            except OSError as error:
-                allowed = f"cannot be written: {error.strerror}"
-                raise InputError(Fault("", "--out", str(self.out), allowed)) from None
         emit_result(self.json, _document(found), lambda: _lines(found))
         return 0
 

@@ -45,28 +45,17 @@ class CheckCommand:
 
     def execute(self) -> int:
         """Print the report; 0 when the file was understood, else 2."""
-        if self.write_map is not None and not self._write_map(self.write_map):
-            return 2
+        if self.write_map is not None:
+            from navcore.checks.map_guess import write_map
+
+            write_map(self.file, self.write_map, self.map)
+            say(f"map: {self.write_map}")
         report = guarded_check(self.file, self.map)
         if self.json or report.ok:
             emit_result(self.json, report.as_dict(), report.lines)
         for fault in report.faults:
             say(str(fault))
         return 0 if report.ok else 2
-
-    def _write_map(self, target: str) -> bool:
-        """Write the guess; say why not where that cannot be."""
-        from navcore.checks.map_guess import write_map
-        from navcore.foundation.errors import InputError
-
-        try:
-            write_map(self.file, target, self.map)
-        except InputError as error:
-            for fault in error.faults:
-                say(str(fault))
-            return False
-        say(f"map: {target}")
-        return True
 
 
 def guarded_check(file: str, map_file: str | None = None) -> FileReport:
@@ -104,11 +93,12 @@ def check(file: str, map_file: str | None = None) -> FileReport:
     from navcore.checks.file import FileReport, check_file
     from navcore.checks.imu import IMU_CHECKER, check_mapped
     from navcore.foundation.errors import InputError
+    from navcore.io.column_map import map_beside
     from navcore.scenario.file import presets
     from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
 
-    if map_file is not None:
-        return check_mapped(file, map_file)
+    if mapped := map_file or map_beside(file):
+        return check_mapped(file, mapped)
     if file in presets() and not Path(file).exists():
         try:
             return check_scenario(file)

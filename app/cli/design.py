@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.out import refused, writing
 from schuler_bench.cli.terminal import emit_result, say
 
 if TYPE_CHECKING:
@@ -77,9 +77,9 @@ def _require_own(folder: Path) -> None:
     except FileNotFoundError:
         return
     except OSError as error:
-        raise _refused(folder, f"cannot be read: {error.strerror}") from None
+        raise refused(folder, f"cannot be read: {error.strerror}") from None
     if foreign:
-        raise _refused(folder, f"holds what this command did not write: {', '.join(foreign[:3])}")
+        raise refused(folder, f"holds what this command did not write: {', '.join(foreign[:3])}")
 
 
 def _write(folder: Path, result: Designs, scenario: Scenario) -> None:
@@ -87,13 +87,7 @@ def _write(folder: Path, result: Designs, scenario: Scenario) -> None:
 
     methods = tuple(share.method for share in result.methods)
     texts = json.dumps(result.as_dict(), indent=2), to_toml(scenario.model_copy(update={"method": methods}))
-    try:
+    with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in zip(_FILES, texts, strict=True):
             (folder / name).write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise _refused(folder, f"cannot be written: {error.strerror}") from None
-
-
-def _refused(folder: Path, reason: str) -> InputError:
-    return InputError(Fault("", "--out", str(folder), reason))

@@ -47,9 +47,10 @@ class StudyCommand:
 
     def execute(self) -> int:
         """Run, sum up, print; 3 when it was stopped. A run that diverges is a result."""
+        from navcore.foundation.cores import cores
         from navcore.study.plan import plan_of, require_affordable
         from navcore.study.results import Folder
-        from navcore.study.study import carry_out, cores
+        from navcore.study.study import carry_out
         from schuler_bench.cli.progress import working
         from schuler_bench.cli.study_text import study_text
 

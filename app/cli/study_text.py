@@ -6,7 +6,7 @@ from schuler_bench.cli.table import columns, number
 
 
 def study_text(document: dict[str, Any]) -> list[str]:
-    """Lines: the share that meets the limits and the median of each metric, then the first metric by cell."""
+    """Lines: share that meets the limits and median of each metric; the first metric by cell, by factor."""
     runs = f"{document['runs']} of {document['of']} runs"
     lines = [f"{document['title'] or 'study'}: {runs}", "", *columns(_methods(document["methods"]))]
     names = [method["name"] for method in document["methods"]]
@@ -16,7 +16,7 @@ def study_text(document: dict[str, Any]) -> list[str]:
         lines += ["", f"{key}, median; in brackets the % of runs in which the method alone has the smallest"]
         head = [", ".join(cells[0]["factors"]), *names]
         lines += columns([head, *([_place(cell), *_cell(cell, key, names)] for cell in cells)])
-    return lines
+    return lines + _depending(document["methods"])
 
 
 def _methods(methods: list[dict[str, Any]]) -> list[list[str]]:
@@ -53,3 +53,27 @@ def _percent(share: float) -> str:
 
 def _interval(share: dict[str, float]) -> str:
     return f"{_percent(share['low'])} to {_percent(share['high'])}"
+
+
+def _depending(methods: list[dict[str, Any]]) -> list[str]:
+    """What moves the first metric most, and its Sobol indices, for each method."""
+    lines: list[str] = []
+    for method in methods:
+        for key, found in [*method.get("tornado", {}).items()][:1]:
+            lines += ["", f"{method['name']}, {key}: least and largest median by factor"]
+            rows = [["factor", "least", "at", "largest", "at"]]
+            for one in found:
+                ends = [_value(one[end]) for end in ("least", "at_least", "largest", "at_largest")]
+                rows.append([one["factor"], *ends])
+            lines += columns(rows)
+        for key, found in [*method.get("sobol", {}).items()][:1]:
+            lines += ["", f"{method['name']}, {key}: Sobol indices with their 95 % intervals"]
+            orders = [[f"{one[name]['value']:.2f} ({one[name]['low']:.2f} to {one[name]['high']:.2f})"
+                       for name in ("first", "total")] for one in found]  # fmt: skip
+            named = [[one["factor"], *order] for one, order in zip(found, orders, strict=True)]
+            lines += columns([["factor", "first order", "total"], *named])
+    return lines
+
+
+def _value(value: Any) -> str:
+    return value if isinstance(value, str) else number(value, 4)

@@ -70,7 +70,7 @@ class TuneCommand:
     def execute(self) -> int:
         """Search and print; 3 when it was stopped."""
         from navcore.design.tune import tune
-        from navcore.foundation.errors import Fault, InputError
+        from navcore.foundation.out import writing
         from navcore.scenario.file import load, to_toml
         from schuler_bench.cli.design_text import tune_text
         from schuler_bench.cli.progress import working
@@ -91,11 +91,8 @@ class TuneCommand:
                 cancelled=stopped,
             )
         if self.out is not None:
-            try:
+            with writing(self.out):
                 self.out.write_text(to_toml(result.scenario), encoding="utf-8")
-            except OSError as error:
-                allowed = f"cannot be written: {error.strerror}"
-                raise InputError(Fault("", "--out", str(self.out), allowed)) from None
         emit_result(self.json, result.as_dict(), lambda: tune_text(self.objective, result))
         if result.stopped:
             say(f"{self.scenario}: stopped; this is the best so far")

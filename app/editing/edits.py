@@ -16,12 +16,13 @@ from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.file import blocks_to_toml, parse_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.sensors.imu import RECORDING
 from schuler_bench.editing.form import Path
 
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),
     "alignment": ("kind",),
-    "imu": ("file", "map", "axes", "begin_s"),
+    "imu": RECORDING,
 }
 
 

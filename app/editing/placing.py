@@ -99,6 +99,10 @@ def unit_frequency(scenario: Scenario, block: Block) -> float:
     return EARTH_RATE if block == "azimuth" else scenario.omega_s
 
 
+def _network(method: Method, block: Block) -> NetworkParameters:
+    return getattr(method, block)
+
+
 def with_pair(
     scenario: Scenario,
     index: int,
@@ -138,7 +142,7 @@ def with_pair(
     wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} {sign}"
     try:
         placed = place(
-            getattr(method, block), damping_ratio, ratio * omega_s, omega_s, h_slope_limit_s=h_slope_limit_s
+            _network(method, block), damping_ratio, ratio * omega_s, omega_s, h_slope_limit_s=h_slope_limit_s
         )
     except InputError as error:
         raise _why_not(method, block, wanted, omega_s, error) from None
@@ -231,8 +235,7 @@ def main_pair(scenario: Scenario, index: int, block: Block = "network") -> MainP
     method = scenario.method[index]
     if method.undamped:
         return None
-    network: NetworkParameters = getattr(method, block)
-    return network.main_pair(unit_frequency(scenario, block))
+    return _network(method, block).main_pair(unit_frequency(scenario, block))
 
 
 def handle_of(scenario: Scenario, index: int, block: Block = "network") -> dict[str, Any]:
@@ -245,7 +248,7 @@ def handle_of(scenario: Scenario, index: int, block: Block = "network") -> dict[
     method, pair = scenario.method[index], main_pair(scenario, index, block)
     omega_s = unit_frequency(scenario, block)
     if pair is None:
-        reason = Text("it runs without its network") if method.undamped else getattr(method, block).no_handle
+        reason = Text("it runs without its network") if method.undamped else _network(method, block).no_handle
         return {"told": Text("No handle for {name}: {reason}.", name=method.name, reason=reason)}
     return {
         "method": index,
@@ -260,7 +263,7 @@ def handle_of(scenario: Scenario, index: int, block: Block = "network") -> dict[
 
 def _why_not(method: Method, block: Block, wanted: str, omega_s: float, error: InputError) -> InputError:
     """Say why the network cannot, what it does now, and what can."""
-    network: NetworkParameters = getattr(method, block)
+    network = _network(method, block)
     loop = analyse(network.at_earth_rate() if block == "azimuth" else network.transfer(omega_s))
     now = Text(
         "its least damped pair stays at ζ = {damping_ratio}, ω = {natural_frequency} {sign}",

@@ -6,16 +6,25 @@ from typing import Any
 
 from navcore.foundation.notation import unit_sign
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
+from navcore.foundation.units import (
+    ARCMIN,
+    ARCSEC,
+    DEG,
+    HOUR,
+    KNOT,
+    MICRO_G,
+    MINUTE,
+    NAUTICAL_MILE,
+    STANDARD_GRAVITY,
+)
 
-_G = 9.80665
 _FAMILIES: tuple[dict[str, float], ...] = (
     {"s": 1.0, "min": MINUTE, "h": HOUR, "d": 24.0 * HOUR},
     {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6},
     {"rad": 1.0, "mrad": 1e-3, "deg": DEG, "arcmin": ARCMIN, "arcsec": ARCSEC},
     {"m": 1.0, "km": 1e3, "nmi": NAUTICAL_MILE},
     {"rad/s": 1.0, "deg/s": DEG, "deg/h": DEG / HOUR},
-    {"m/s^2": 1.0, "g": _G, "mg": 1e-3 * _G, "ug": 1e-6 * _G},
+    {"m/s^2": 1.0, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY, "ug": MICRO_G},
 )
 """Units that stand for each other, in SI."""
 _SPELLED = {

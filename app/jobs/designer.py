@@ -10,6 +10,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs.judge import without_methods
+from schuler_bench.jobs.load import spare_load
 from schuler_bench.jobs.refusals import refusals
 from schuler_bench.jobs.search import Search
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from navcore.design.budget import Budget
     from navcore.design.designs import Designs
     from navcore.design.pareto import Pareto
+    from navcore.design.profile import Profile
     from navcore.design.sun import Tuning, TuningSettings
     from navcore.design.tune import Tuned
 
@@ -152,6 +154,28 @@ class Designer(Search[TuningTask, "Tuned"]):
         return refusals(error)
 
 
+class Profiles(Search[TuningTask, "tuple[Profile, ...]"]):
+    """Measures an objective over each parameter of one method; ``tell`` and ``name`` as of `Search`."""
+
+    def __init__(self, tell: Callable[[], None], name: str = "profiles") -> None:
+        super().__init__(
+            tell, _profiles, bool, name=name, load=lambda task: spare_load(task.scenario), still_s=0.3
+        )
+        self._wanted: TuningTask | None = None
+
+    def follow(self, task: TuningTask) -> None:
+        """Measure this once it rests, unless that was wanted last."""
+        if task != self._wanted:
+            self._wanted = task
+            self._submit(task, None)
+
+    def beside(self, task: TuningTask) -> tuple[Profile, ...]:
+        """Give the last ones of the same parameters and objective; nothing where there are none."""
+        asked = self.asked
+        fits = asked is not None and (asked.objective, asked.vary) == (task.objective, task.vary)
+        return self.result or () if fits else ()
+
+
 class Tuner(Search[TableTask, "Tuning"]):
     """Searches for one table (Sun's double loop) at a time; ``tell`` and ``name`` as of `Search`."""
 
@@ -214,6 +238,21 @@ def _tune(task: TuningTask, progress: Progress, cancelled: Cancelled) -> Tuned:
         along=stochastic_model(task.scenario).silent,
         default_limits=task.default_limits,
         confirm=True,
+        progress=progress,
+        cancelled=cancelled,
+    )
+
+
+def _profiles(task: TuningTask, progress: Progress, cancelled: Cancelled) -> tuple[Profile, ...]:
+    from navcore.design.profile import profiles
+    from navcore.scenario.stochastic import stochastic_model
+
+    return profiles(
+        task.scenario,
+        task.objective,
+        task.vary,
+        along=stochastic_model(task.scenario).silent,
+        whole=task.whole,
         progress=progress,
         cancelled=cancelled,
     )

@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from navcore.foundation.cores import cores
+
 GIB = 1 << 30
 WORKERS = "SCHULER_WORKERS"
 """Set in the environment of a worker: how many share the machine."""
@@ -286,9 +288,7 @@ def memory_of_machine() -> float:
 
 def cores_of_machine() -> int:
     """Cores this process may use, at least two: a run that waits must not keep all others waiting."""
-    if hasattr(os, "sched_getaffinity"):
-        return max(2, len(os.sched_getaffinity(0)))
-    return max(2, os.cpu_count() or 1)
+    return max(2, cores())
 
 
 _one: list[Scheduler] = []

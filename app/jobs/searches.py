@@ -5,8 +5,9 @@ import threading
 from collections.abc import Callable
 
 from navcore.engine.run import Run
-from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Profiles, Tuner
 from schuler_bench.jobs.judge import Judge
+from schuler_bench.jobs.sweeper import Sweeper
 from schuler_bench.jobs.why import Explainer
 
 _log = logging.getLogger("schuler.searches")
@@ -30,12 +31,16 @@ class Searches:
         Error budget along the run.
     designer : Designer
         Best setting of a method.
+    profiles : Profiles
+        Objective over each parameter of a method.
     fronts : Fronts
         Pareto fronts of all networks.
     limits : Limits
         Every network tuned for the limits.
     judge : Judge
         Shares of seeds that meet the limits.
+    sweeper : Sweeper
+        Runs at other latitudes, log errors, sensor grades and sea states.
     """
 
     def __init__(self, name: str) -> None:
@@ -45,17 +50,21 @@ class Searches:
         self.tuner = Tuner(self._tell, name)
         self.budgeter = Budgeter(self._tell, name)
         self.designer = Designer(self._tell, name)
+        self.profiles = Profiles(self._tell, name)
         self.fronts = Fronts(self._tell, name)
         self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
+        self.sweeper = Sweeper(self._tell, name)
         self._all = (
             self.explainer,
             self.tuner,
             self.budgeter,
             self.designer,
+            self.profiles,
             self.fronts,
             self.limits,
             self.judge,
+            self.sweeper,
         )
 
     def watch(self, changed: Callable[[], None]) -> None:
@@ -76,6 +85,7 @@ class Searches:
         """The scenario has changed: the processors belong to its run."""
         self.explainer.cancel()
         self.judge.cancel()
+        self.sweeper.cancel()
 
     def explain(self, run: Run) -> None:
         """Compute what dominates a run: a view that says so is in front and shows the run."""

@@ -88,7 +88,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Misprint:
-    """One error of a paper that changes a result (theory.md section 8).
+    """One error of a paper that changes a result (theory.md 8), or a remark on what it prints rightly.
 
     Attributes
     ----------
@@ -104,6 +104,8 @@ class Misprint:
         What the printed form does.
     compute : callable
         Returns the `Comparison`; nothing is kept, every call computes anew.
+    remark : bool
+        What is printed is no error: the other form shows what it costs, or means elsewhere.
     """
 
     id: str
@@ -113,6 +115,7 @@ class Misprint:
     right: str
     consequence: str
     compute: Callable[[], Comparison]
+    remark: bool = False
 
 
 def growth_time(poles: np.ndarray) -> float | None:

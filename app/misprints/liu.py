@@ -243,6 +243,7 @@ LIU = (
         right=Text("state space in normalised time (theory.md 3.5)"),
         consequence=Text("a wrong, then unstable network at small steps"),
         compute=_direct_form,
+        remark=True,
     ),
     Misprint(
         id="liu-fig7",
@@ -252,6 +253,7 @@ LIU = (
         right=Text("like a step of the whole 0.5 m/s that the log is off"),
         consequence=Text("the cost of a switch is put at half its size"),
         compute=_figure_7,
+        remark=True,
     ),
 )
 """Misprints of Liu 2021 in the order of the paper."""

@@ -118,6 +118,16 @@ def restyled(figure: PlotlyFigure, run: Run, pins: Sequence[Pinned]) -> PlotlyFi
     return figure
 
 
+def without_hidden(figure: PlotlyFigure, hidden: Sequence[bool]) -> None:
+    """Leave out the curves and notes of methods that are hidden, by their places; in place."""
+    gone = {str(place) for place, is_hidden in enumerate(hidden) if is_hidden}
+    for trace in figure["data"]:
+        if trace.get("legendgroup") in gone:
+            trace["visible"] = False
+    notes = figure["layout"].get("annotations", ())
+    figure["layout"]["annotations"] = [note for note in notes if note.get("name") not in gone]
+
+
 def difference_text(new: float, old: float, unit: Unit) -> str:
     """Difference of two numbers (SI) in a unit and, with its sign, in per cent of the old one."""
     value = number((new - old) / unit.si, 3)

@@ -42,6 +42,8 @@ SEA = "#F4F7FA"
 
 # The page's own font stack, so that a plot's text is the page's text.
 FONT_FAMILY = '-apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif'
+SVG_FONT = FONT_FAMILY.replace('"', "'")
+"""The same as an attribute of SVG."""
 FONT_SIZE = 13
 TITLE_SIZE = 14
 
@@ -51,6 +53,8 @@ CURVE_WIDTH = 1.5
 
 _BOLD_PX = 7.4
 """Mean width of a letter in a panel's title."""
+_ROW_PX, _BESIDE_PX = 22, 84.0
+"""Height of a row of a legend, and what a figure has beside it."""
 _BETWEEN_PX = 32.0
 """Half the room between two columns of plots for the labels of an axis."""
 
@@ -150,8 +154,35 @@ def framed(
     margin : dict
         ``l``, ``r``, ``t``, ``b`` without the legend, px.
     """
-    bottom = margin["b"] + 22 * legend_rows(names, width_px - 84.0)
+    bottom = margin["b"] + _ROW_PX * legend_rows(names, width_px - _BESIDE_PX)
     return layout(margin=margin | {"b": bottom}, legend=legend(), meta={"aspect": aspect}) | more
+
+
+def without_legend(figure: Any, names: Sequence[str], width_px: float) -> None:
+    """Take entries of these names, and their room, out of the legend of a figure that `framed` laid out.
+
+    Parameters
+    ----------
+    figure : plotly figure as a dict
+        Changed in place.
+    names : sequence of str
+        As written.
+    width_px : float
+        Expected width of the figure, as `framed` had it.
+    """
+    named = [trace for trace in figure["data"] if trace.get("showlegend", True)]
+    gone = {plain(name) for name in names}
+    left = [trace["name"] for trace in named if trace["name"] not in gone]
+    if len(left) == len(named):
+        return
+    for trace in named:
+        trace["showlegend"] = trace["name"] not in gone
+    rows = legend_rows([trace["name"] for trace in named], width_px - _BESIDE_PX)
+    more = rows - legend_rows(left, width_px - _BESIDE_PX) * bool(left)
+    layout = figure["layout"]
+    layout["margin"] = layout["margin"] | {"b": layout["margin"]["b"] - _ROW_PX * more}
+    # entries of groups stand below each other
+    layout["legend"] = layout.get("legend", {}) | {"traceorder": "normal"}
 
 
 def lines(method: str, index: int, width: float = LINE_WIDTH) -> dict[str, Any]:

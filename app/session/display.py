@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from navcore.quantities import ERRORS, STATISTICS
+from navcore.quantities import ERRORS, LIMITED, QUANTITIES, STATISTICS
 from schuler_bench.plots.effective import SHOWN
 from schuler_bench.plots.envelope import BandKind
 from schuler_bench.plots.legend import State, after
@@ -15,6 +15,8 @@ from schuler_bench.plots.legend import State, after
 FIRST_TRANSFER = "phi/dv_r"
 OBJECTIVES = ("tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s")
 """Quantities for which the page tunes a method."""
+SWEPT = tuple(key for key in LIMITED if QUANTITIES[key].kind is not None)
+"""Quantities of a run that are swept."""
 AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
 """Quantities on the axes of the Pareto fronts."""
 
@@ -85,6 +87,8 @@ class Display(BaseModel):
         What the tab "Tune" looks for: the best setting of one method, or the Pareto fronts of all networks.
     front_x, front_y : str
         Objectives on the axes of the Pareto fronts: of `AXES`.
+    swept : str
+        Quantity that the tab "Sweep" shows: of `SWEPT`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -121,6 +125,7 @@ class Display(BaseModel):
     search: Literal["setting", "fronts"] = "setting"
     front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
     front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"
+    swept: Annotated[str, _one_of(SWEPT)] = "tilt_rms_arcsec"
 
     @property
     def enlarged(self) -> bool:
@@ -133,9 +138,15 @@ class Display(BaseModel):
 
     def clicked(self, key: str) -> tuple[tuple[str, State], ...]:
         """`legend` after a click on a curve's entry: the last 60 choices count."""
+        return self._with_state(key, after(self.state_of(key)))
+
+    def looked(self, key: str) -> tuple[tuple[str, State], ...]:
+        """`legend` after a click on a curve's eye, which hides it or shows it again."""
+        return self._with_state(key, "shown" if self.state_of(key) == "hidden" else "hidden")
+
+    def _with_state(self, key: str, state: State) -> tuple[tuple[str, State], ...]:
         others = tuple(entry for entry in self.legend if entry[0] != key)
-        entry: tuple[str, State] = key, after(self.state_of(key))
-        return others if entry[1] == "shown" else (*others[-59:], entry)
+        return others if state == "shown" else (*others[-59:], (key, state))
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

@@ -1,44 +1,41 @@
-"""Files a visitor uploads: kept in a folder of the session, checked, made into scenarios that run on them."""
+"""Files a visitor uploads: kept in a folder of the session, checked, with the maps of their columns."""
 
 from __future__ import annotations
 
-import math
+import tomllib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from navcore.foundation import guarded
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG, HOUR
-from navcore.motion.truth import LAT, LON
+from navcore.io.column_map import map_beside, parse_map
+from navcore.io.recording import NO_TABLE
+from navcore.scenario.file import FILE_FIELDS, names_files
 from navcore.scenario.model import Scenario
 from schuler_bench.http.limits import MIB, Limits
 from schuler_bench.session.folder import TEMPORARY, opened, remove_files, temporary_name
 
 if TYPE_CHECKING:
     from navcore.checks.file import FileReport
+    from navcore.checks.map_guess import Preview
 
 LARGEST_FILE = Limits().upload_bytes
 """The server's limit of an upload: there is one."""
 MOST_FILES = 12
 LARGEST_FOLDER = 64 * MIB
 
-_WITH_FILES = ("motion", "reference", "imu")
-"""Blocks of a scenario that may name files: a visitor's must name none of the server's."""
 IMU = "imu"
-_ALIGNED_S = 600.0
-_ALIGNED_PART = 0.5
-"""Of a short IMU record, that is at most spent on the alignment."""
-_SPEEDS = ("water", "ground", "velocity")
 
 
 @dataclass(frozen=True)
 class Upload:
-    """One understood file.
+    """One file, understood or a table whose columns are still to be named.
 
     Attributes
     ----------
@@ -54,6 +51,14 @@ class Upload:
         What the user should know.
     details : mapping
         What the check found in it.
+    faults : tuple of Fault
+        Why it cannot be used before a map says what its columns mean.
+    table : Preview or None
+        Of a table that a map may describe.
+    map : mapping
+        Data of its map, or of the guess where none is saved; empty without a table.
+    mapped : bool
+        Whether a map is saved beside it.
     """
 
     path: Path
@@ -62,6 +67,10 @@ class Upload:
     text: tuple[str, ...]
     warnings: tuple[str, ...]
     details: Mapping[str, Any] = field(default_factory=dict)
+    faults: tuple[Fault, ...] = ()
+    table: Preview | None = None
+    map: Mapping[str, Any] = field(default_factory=dict)
+    mapped: bool = False
 
 
 @dataclass
@@ -86,7 +95,7 @@ class Uploads:
     keep_once: Callable[[Path], None] = lambda _: None
 
     def add(self, name: str, content: bytes) -> Upload:
-        """Store and check a log, track, heading or IMU file.
+        """Store and check a log, track, heading or IMU file; a map saved beside its name is used again.
 
         Parameters
         ----------
@@ -98,7 +107,8 @@ class Uploads:
         Raises
         ------
         InputError
-            Too large, too many, or not understood (one fault for each thing wrong); nothing is kept then.
+            Too large, too many, or not understood and no table (one fault for each thing wrong); nothing is
+            kept then.
         """
         from schuler_bench.http.frames import safe_file_name
 
@@ -109,15 +119,50 @@ class Uploads:
             try:
                 with folder.create(fresh) as file:
                     file.write(content)
-                report = guarded.call(name, check_recording, self.folder / fresh)
-                if not report.ok:
-                    raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
+                found = self._found(path, self.folder / fresh, _map_beside(path))
                 self.keep_once(self.folder / fresh)
                 folder.place(fresh, name)
             finally:
                 folder.discard(fresh)
-        self.files[name] = _understood(path, report)
-        return self.files[name]
+        self.files[name] = found
+        return found
+
+    def _found(self, path: Path, stored: Path, map_text: str) -> Upload:
+        """What a stored file holds that is to be at ``path``; raises `InputError` when it is not kept."""
+        report, table, data = guarded.call(path.name, look_at, stored, map_text)
+        faults = tuple(Fault(_own(f.where, stored, path), f.field, f.value, f.allowed) for f in report.faults)
+        if faults and table is None:
+            raise InputError(Fault(path.name, f.field, f.value, f.allowed) for f in faults)
+        imu = report.kind.startswith("recorded IMU")
+        held = frozenset((IMU,) if imu else report.details.get("quantities", ()))
+        said = report.text, report.warnings, report.details
+        return Upload(path, report.kind, held, *said, faults, table, data, bool(map_text))
+
+    def use_map(self, name: str, data: Mapping[str, Any] | None) -> Upload:
+        """Read a table by a map from now on, which is saved beside it; None: by the guess.
+
+        Raises
+        ------
+        InputError
+            The map is wrong, or the table cannot be read by it; nothing is changed then.
+        """
+        from navcore.checks.map_guess import as_toml
+
+        before, beside, fresh = self.files[name], name + MAP_SUFFIX, temporary_name()
+        if before.table is None:
+            raise InputError(Fault(name, "map", None, NO_TABLE))
+        text = "" if data is None else as_toml(dict(data), before.table, name)
+        found = self._found(before.path, before.path, text)
+        if text and found.faults:
+            raise InputError(found.faults)
+        with opened(self.folder) as folder:
+            folder.discard(beside)
+            if text:
+                with folder.create(fresh) as file:
+                    file.write(text.encode())
+                folder.place(fresh, beside)
+        self.files[name] = found
+        return found
 
     def _refuse_excess(self, name: str, size: int) -> None:
         kept = sum(upload.path.stat().st_size for other, upload in self.files.items() if other != name)
@@ -156,15 +201,11 @@ class Uploads:
         with opened(self.folder) as folder:
             for name in folder.files(TEMPORARY.fullmatch):
                 folder.remove(name, "an upload that was not finished")
-            files = folder.files(lambda name: safe_file_name(name) == name)
+            files = folder.files(lambda name: safe_file_name(name) == name and not name.endswith(MAP_SUFFIX))
         for name in sorted(files, key=lambda name: files[name].st_mtime)[:MOST_FILES]:
             path = self.folder / name
-            try:
-                report = guarded.call(path.name, check_recording, path)
-            except InputError:
-                continue
-            if report.ok:
-                self.files[path.name] = _understood(path, report)
+            with suppress(InputError):
+                self.files[name] = self._found(path, path, _map_beside(path))
 
     def clear(self) -> None:
         """Remove all files and the folder."""
@@ -176,128 +217,33 @@ class Uploads:
         return [str(u.path) for u in self.files.values() if u.quantities.intersection(quantities)]
 
 
-def check_recording(path: Path) -> FileReport:
-    """Say what a log, track, heading or IMU file holds."""
+def look_at(path: Path, map_text: str = "") -> tuple[FileReport, Preview | None, dict[str, Any]]:
+    """Say what a recording holds, and of a table what it looks like and what its map says."""
     from navcore.checks.file import check_file
-    from navcore.checks.imu import IMU_CHECKER
+    from navcore.checks.imu import IMU_CHECKER, check_mapped
+    from navcore.checks.map_guess import guess, preview_of
 
-    return check_file(path, [IMU_CHECKER])
-
-
-def _understood(path: Path, report: FileReport) -> Upload:
-    held = (IMU,) if report.kind.startswith("recorded IMU") else report.details.get("quantities", ())
-    return Upload(path, report.kind, frozenset(held), report.text, report.warnings, report.details)
-
-
-def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, list[str]]:
-    """Let a scenario run on the uploaded recordings.
-
-    A log among them becomes the reference; positions and heading become the motion, and the site is set to
-    the track's start. The duration is set to the time that all of them share.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        Its methods, sensors and initial errors are kept.
-    uploads : Uploads
-        At least one file.
-
-    Returns
-    -------
-    Scenario, and in words what was changed.
-
-    Raises
-    ------
-    InputError
-        The recordings share no time, or cannot be used.
-    """
-    from navcore.sensors.recorded import recorded_window
-
-    if uploads.holding(IMU):
-        return _on_recorded_imu(scenario, uploads)
-    data, notes = scenario.canonical(), []
-    speeds = uploads.holding(*_SPEEDS)
-    if uploads.holding("position") and uploads.holding("heading"):
-        data["motion"] = {"kind": "track", "file": uploads.holding("position", "heading", "attitude")}
-        notes.append(Text("The ship follows the uploaded track and heading."))
-    elif uploads.holding("position", "heading"):
-        missing = "heading" if uploads.holding("position") else Text("track (positions)")
-        notes.append(
-            Text("The track is not used yet: a {missing} is missing. Upload it too.", missing=missing)
-        )
-    # A speed log proper has speeds along the ship's axes; a receiver has its course and speed.
-    logs = uploads.holding("water", "ground") or speeds
-    if logs:
-        kept = {k: v for k, v in data["reference"].items() if k in ("event", "outage")}
-        data["reference"] = {"kind": "file", "file": logs, **kept, "frame": "body"}
-        notes.append(
-            Text(
-                "The reference is the uploaded log {name}.",
-                name=Text.joined(", ", (Path(path).name for path in logs)),
-            )
-        )
-    parsed = Scenario.parse(data)
-    window = recorded_window(parsed.motion, parsed.reference)
-    if window is None:
-        raise InputError(
-            Fault("", "upload", None, Text("holds neither a log nor a track with heading: nothing to run on"))
-        )
-    step_s = parsed.run.step_s
-    span_s = math.floor(window.span_s / step_s) * step_s
-    data["run"] |= {
-        "duration_h": span_s / HOUR,
-        "output_step_s": min(parsed.run.output_step_s, max(step_s, 1.0)),
-    }
-    notes.append(Text("The duration is the {span_s:g} s that all uploaded streams share.", span_s=span_s))
-    if parsed.motion.recorded:
-        start = parsed.motion.truth(1, 1.0, parsed.site.site(), parsed.earth, window.start_s).values[0]
-        lat_deg, lon_deg = float(start[LAT]) / DEG, float(start[LON]) / DEG
-        data["site"] |= {"lat_deg": round(lat_deg, 6), "lon_deg": round(lon_deg, 6)}
-        notes.append(
-            Text(
-                "The site is the track's start, {lat_deg:.4f}°, {lon_deg:.4f}°.",
-                lat_deg=lat_deg,
-                lon_deg=lon_deg,
-            )
-        )
-    data["title"], data["source"] = Text("Uploaded recording"), Text.joined(", ", uploads.files)[:300]
-    return Scenario.parse(data), notes
+    report = check_mapped(path, parse_map(map_text, "map")) if map_text else check_file(path, [IMU_CHECKER])
+    try:
+        table = preview_of(path)
+    except InputError:
+        table = None
+    return report, table, {} if table is None else tomllib.loads(map_text) if map_text else guess(table)
 
 
-def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, list[str]]:
-    """Align and navigate on the newest uploaded IMU record, of a vehicle that stands."""
-    name, upload = next((n, u) for n, u in reversed(uploads.files.items()) if IMU in u.quantities)
-    data, details = scenario.canonical(), upload.details
-    place, span_s = details["place"], float(details["span_s"])
-    aligned_s = math.floor(min(_ALIGNED_S, _ALIGNED_PART * span_s))
-    data["imu"] = {"file": str(upload.path), "axes": "frd" if details["up_axis"] == "-z" else "rfu"}
-    data["motion"], data["reference"] = {"kind": "static"}, {"kind": "log"}
-    data["alignment"] = {"kind": "compass", "duration_s": float(aligned_s)}
-    data["run"] |= {
-        "fidelity": "strapdown",
-        "rate_hz": details["rate_hz"],
-        "duration_h": math.floor(span_s - aligned_s - 1.0) / HOUR,
-        "output_step_s": min(scenario.run.output_step_s, 1.0),
-    }
-    notes: list[str] = [
-        Text(
-            "Full strapdown on {name}: {aligned_s} s of alignment, then navigation, with "
-            "a log that reads zero: the vehicle is taken to stand.",
-            name=name,
-            aligned_s=aligned_s,
-        )
-    ]
-    if place is not None:
-        data["site"] = place
-        notes.append(
-            Text(
-                "The site is that of the file, {lat_deg:.4f}°, {lon_deg:.4f}°.",
-                lat_deg=place["lat_deg"],
-                lon_deg=place["lon_deg"],
-            )
-        )
-    data["title"], data["source"] = Text("Recorded IMU"), name[:300]
-    return Scenario.parse(data), notes
+def _map_beside(path: Path) -> str:
+    """Text of the map that is saved beside a file; empty where there is none."""
+    beside = map_beside(path)
+    return "" if beside is None else beside.read_text(encoding="utf-8")
+
+
+def _own(where: str, stored: Path, path: Path) -> str:
+    """A fault's place with the file's own name in place of that under which it is stored."""
+    if isinstance(where, Text):
+        values = where.values.items()
+        own = {name: _own(value, stored, path) if isinstance(value, str) else value for name, value in values}
+        return Text(*where.forms, **own)
+    return where.replace(str(stored), path.name).replace(stored.name, path.name)
 
 
 def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
@@ -355,7 +301,7 @@ def complete_scenario(text: str, name: str) -> dict[str, Any]:
 
 def with_plain_names(scenario: Scenario) -> Scenario:
     """For a download: files by their names alone, to be put beside the scenario."""
-    if all(getattr(getattr(scenario, block), "file", None) is None for block in _WITH_FILES):
+    if not names_files(scenario):
         return scenario
     return Scenario.parse(plain_names(scenario.canonical()))
 
@@ -368,7 +314,7 @@ def plain_names(data: dict[str, Any]) -> dict[str, Any]:
 def _renamed(data: dict[str, Any], rename: Callable[[str, str], str]) -> dict[str, Any]:
     """Give every file in a scenario's canonical data the name ``rename(field, name)``."""
     data = dict(data)
-    for block, key in product(_WITH_FILES, ("file", "map")):
+    for block, key in FILE_FIELDS:
         named = data.get(block, {}).get(key)
         if named:
             single = isinstance(named, str)

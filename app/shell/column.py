@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any
 
 from navcore.foundation.text import Text, quoted
+from schuler_bench.bridge.controls import rail_style
 from schuler_bench.session.shown import Shown
-from schuler_bench.shell.layout import Layout
+from schuler_bench.shell.layout import RAIL_PX, Layout
 from schuler_bench.shell.view import PictureView, View
 from schuler_bench.shell.view_faults import ViewFaults
 
@@ -32,6 +33,7 @@ class Column:
         self._gui, self._views, self._faults = gui, views, faults
         self._pictured = {view.title: view for view in views if isinstance(view, PictureView)}
         self._panels: list[viser.PanelHandle] = []
+        self._rail = gui.add_html("", order=3)
         self._tabs: dict[str, viser.GuiTabHandle] = {}
         self._stale = set(self._pictured)
 
@@ -42,11 +44,13 @@ class Column:
         upper = self._gui.add_panel()
         upper.dock_right()
         self._panels, self._tabs = [upper], {}
-        if layout.wide:
+        if layout.two:
             lower = self._gui.add_panel()
             lower.dock_below(upper)
             self._panels.append(lower)
         upper.set_width(round(layout.right_px * layout.scale))
+        folded = layout.view_px[0] == RAIL_PX
+        self._rail.content = rail_style(layout.left_px, layout.right_px) if folded else ""
         self._stale = set(self._pictured)
         for view in self._views:
             if view.always:

@@ -1,4 +1,4 @@
-"""Above the left tabs: state of the run, its progress and cancel, the scenario chooser."""
+"""In the top bar: name, scenario, state of the run, progress, cancel; below the controls its warnings."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ from schuler_bench.plots.units import duration
 from schuler_bench.session.session import Session
 from schuler_bench.shell import notices
 from schuler_bench.shell.opening import Opening
-from schuler_bench.shell.view import if_user
+from schuler_bench.shell.view import Tab, if_user
 
 if TYPE_CHECKING:
     import viser
 
 RUN_AGAIN, RUN_STRAPDOWN = Text("Run again"), Text("Run the strapdown")
+_NAME = '<div class="sb-topbar" data-sb-part="name"><h1>Schuler Bench</h1></div>'
+WARNINGS = 30.0
+"""Place in the left column of what is to be heeded: below the tabs, where it moves no control."""
 _WAITS = "#B26A00"
 """Colour of a state that will not last."""
 # While a picture is old it is dimmed.
@@ -27,12 +30,14 @@ _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
 
 
 class HeaderPanel:
-    """The head of the left column, which is always in view.
+    """What the top bar says of scenario and run.
 
     Parameters
     ----------
     gui : viser.GuiApi
         Of the client.
+    bar : Tab
+        The top bar.
     opening : Opening
         Scenarios to choose from.
     session : Session
@@ -42,21 +47,23 @@ class HeaderPanel:
     """
 
     def __init__(
-        self, gui: viser.GuiApi, opening: Opening, session: Session, focus: Mapping[str, str]
+        self, gui: viser.GuiApi, bar: Tab, opening: Opening, session: Session, focus: Mapping[str, str]
     ) -> None:
         self._opening, self._session, self._focus = opening, session, focus
-        self._state = gui.add_html("", order=10)
-        self._progress = gui.add_progress_bar(0.0, visible=False, order=11)
-        self._stop = gui.add_button(Text("Stop the run"), color="orange", visible=False, order=12)
-        self._again = gui.add_button(RUN_AGAIN, visible=False, order=13)
-        self._scenario = gui.add_dropdown(
-            "scenario",
-            opening.scenarios(),
-            hint=Text("A preset, or what was uploaded; choosing one starts from it anew."),
-            order=14,
-        )
-        self._about = gui.add_html("", order=15)
-        self._note = gui.add_html("", visible=False, order=16)
+        with bar:
+            gui.add_html(_NAME, order=0)
+            self._scenario = gui.add_dropdown(
+                "scenario",
+                opening.scenarios(),
+                hint=Text("A preset, or what was uploaded; choosing one starts from it anew."),
+                order=1,
+            )
+            self._about = gui.add_html("", order=2)
+            self._state = gui.add_html("", order=10)
+            self._progress = gui.add_progress_bar(0.0, visible=False, order=11)
+            self._stop = gui.add_button(Text("Stop the run"), color="orange", visible=False, order=12)
+            self._again = gui.add_button(RUN_AGAIN, visible=False, order=13)
+        self._note = gui.add_html("", visible=False, order=WARNINGS)
         self._scenario.on_update(if_user(lambda: opening.choose_scenario(self._scenario.value)))
         self._stop.on_click(lambda _: session.cancel_run())
         self._again.on_click(lambda _: session.redo_run())
@@ -74,12 +81,13 @@ class HeaderPanel:
         ]
         tab = self._focus.get(scenario.view.focus, "")
         self._about.content = Text(
-            '<div id="sb-focus" data-scenario="{origin:html}" data-tab="{tab:html}" '
-            'style="margin:-2px 10px 8px;font-size:12.5px;line-height:1.35;color:{muted}">'
-            "{line}</div>",
+            '<div data-sb-part="about"><button class="sb-do sb-info" popovertarget="sb-focus" '
+            'aria-label="About the scenario" title="{title:html}">i</button>'
+            '<div id="sb-focus" popover data-scenario="{origin:html}" data-tab="{tab:html}">'
+            "{line}</div></div>",
             origin=origin,
             tab=tab,
-            muted=style.MUTED,
+            title=scenario.title or origin,
             line=Text.joined("<br>", (line for line in lines if line)),
         )
 
@@ -150,11 +158,8 @@ class HeaderPanel:
 
     def _show_state(self, text: str, color: str, *, old: bool = False) -> None:
         self._state.content = Text(
-            '<div id="sb-status" role="status" style="margin:2px 10px '
-            '8px;font-size:12.5px;color:{ink}"><span '
-            'style="display:inline-block;width:9px;height:9px;border-radius:50%;margin-right:7px;backg'
-            'round:{color}"></span>{text:html}</div>{dim}',
-            ink=style.INK,
+            '<div id="sb-status" role="status" data-sb-part="status" title="{text:html}">'
+            '<span style="background:{color}"></span>{text:html}</div>{dim}',
             color=color,
             text=text,
             dim=_DIM if old else "",

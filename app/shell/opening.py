@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from navcore.engine.measures import metrics
 from navcore.foundation.errors import InputError
+from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets, to_toml
 from schuler_bench.editing import edits
 from schuler_bench.session.history import first_editable
+from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.session import Session
-from schuler_bench.session.uploads import opened_scenario, recorded_scenario, with_plain_names
+from schuler_bench.session.uploads import Upload, opened_scenario, with_plain_names
 from schuler_bench.shell import notices
 
 if TYPE_CHECKING:
@@ -72,10 +74,37 @@ class Opening:
                 return
             upload = session.uploads.add(name, content)
             session.on_change()
-            held = Text("It holds: {quantities}.", quantities=", ".join(sorted(upload.quantities)))
-            self._run_on_files(
-                Text("{name}: {kind}", name=upload.path.name, kind=upload.kind), [held, *upload.warnings]
-            )
+            self._run_on(upload)
+
+    def use_map(self, name: str, data: Mapping[str, Any] | None) -> None:
+        """Read an uploaded table by a map, or by the guess, and run on it."""
+        session = self._session
+        title = Text("{name} cannot be read by these columns; nothing was changed", name=name)
+        with session.lock, notices.told(self._client, title, self._refresh):
+            upload = session.uploads.use_map(name, data)
+            session.on_change()
+            self._run_on(upload)
+
+    def give_map(self, name: str, data: Mapping[str, Any]) -> None:
+        """Let the browser save the map of an uploaded table."""
+        from navcore.checks.map_guess import as_toml
+
+        table = self._session.uploads.files[name].table
+        if table is not None:
+            content = as_toml(dict(data), table, name).encode()
+            self._client.send_file_download(name + MAP_SUFFIX, content, save_immediately=True)
+            self._client.flush()
+
+    def _run_on(self, upload: Upload) -> None:
+        """Tell what a file holds and run on it, or say what its columns still need."""
+        name = upload.path.name
+        if upload.faults:
+            title = Text("{name} is kept, but not used yet: say what its columns mean in Files", name=name)
+            notices.tell(self._client, title, [str(fault) for fault in upload.faults], "warning")
+            self._refresh()
+            return
+        held = Text("It holds: {quantities}.", quantities=", ".join(sorted(upload.quantities)))
+        self._run_on_files(Text("{name}: {kind}", name=name, kind=upload.kind), [held, *upload.warnings])
 
     def use_files(self) -> None:
         """Run on the uploaded recordings."""

@@ -26,7 +26,7 @@ from schuler_bench.shell.column import Column
 from schuler_bench.shell.commands import Commands
 from schuler_bench.shell.editor import Editor
 from schuler_bench.shell.header import HeaderPanel
-from schuler_bench.shell.layout import Layout, Window, layout_for
+from schuler_bench.shell.layout import Columns, Layout, Window, layout_for
 from schuler_bench.shell.opening import Opening
 from schuler_bench.shell.pace import Pace
 from schuler_bench.shell.palette import Palette
@@ -58,7 +58,7 @@ class Page:
         self.client, self.session, self.gui = client, session, client.gui
         self._closed = self._built = self._tells = False
         self._say_again_s = 0.0
-        self._window: Window = (0, 0, False, False, 1.0)
+        self._window: Window = (0, 0, False, False, 1.0, Columns())
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -84,7 +84,8 @@ class Page:
         else:
             # No word from the script: the view, in device pixels, covers the window while nothing is docked.
             camera = self.client.camera
-            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False, False, 1.0)
+            width, height = max(camera.image_width, 1280), max(camera.image_height, 720)
+            self._window = (width, height, False, False, 1.0, Columns())
         with session.lock, self.client.atomic():
             self._layout = self.wanted_layout()
             gui.main_panel.dock_left()
@@ -115,12 +116,13 @@ class Page:
         gui, session, client = self.gui, self.session, self.client
         opening = Opening(client, session, self._again)
         self.editor = Editor(client, session, self, lambda: frame.controls())
+        bar = gui.add_folder("", order=4)
         frame = Frame(
-            client, session, self.commands, self.editor, opening, kinds, lambda: self._layout,
+            client, bar, session, self.commands, self.editor, opening, kinds, lambda: self._layout,
             lambda: self._views, self._again_pictures, self._again,
         )  # fmt: skip
         focus = {kind.focus: kind.title for kind in kinds if kind.focus}
-        self.header = HeaderPanel(gui, opening, session, focus)
+        self.header = HeaderPanel(gui, bar, opening, session, focus)
         self._views = [kind(frame) for kind in kinds]
         group = gui.add_tab_group(order=20)
         for view in self._views:
@@ -316,8 +318,7 @@ class Page:
             attributes = f'data-number="{number}" data-answer="{self._reports.painted_id}"'
             self._picture.content = Text("<div id='sb-picture' hidden {told}></div>", told=attributes)
         self.client.flush()
-        # A tab that came to the front meanwhile was not yet known to be out of date.
-        self._show_stale()
+        self._show_stale()  # a tab that came to the front meanwhile was not yet known to be out of date
 
     def _again(self) -> None:
         with self.session.lock, self.client.atomic():

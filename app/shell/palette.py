@@ -44,7 +44,7 @@ class Palette:
     def __init__(self, frame: Frame, page: View, free: frozenset[str]) -> None:
         self._client, self._session, self._commands = frame.client, frame.session, frame.commands
         self._frame, self._page, self._free = frame, page, free
-        self._toolbar = Toolbar(frame.gui, order=5)
+        self._toolbar = Toolbar(frame.gui, frame.bar)
         self._register(frame.opening)
         self._state: tuple[object, ...] = ()
         self._values: list[Any] = []

@@ -3,7 +3,8 @@
 from typing import Any, ClassVar
 
 from navcore.engine.run import Run
-from schuler_bench.plots.pinned import restyled, together
+from schuler_bench.plots import style
+from schuler_bench.plots.pinned import restyled, together, without_hidden
 from schuler_bench.plots.plotly_data import PlotlyFigure, enlarged
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.layout import CHOOSER_PX
@@ -75,9 +76,23 @@ class PlotlyView(PictureView[PlotlyFigure]):
         return self.frame.layout().text_px
 
     def picture(self, found: Shown) -> PlotlyFigure:
-        """Make the figure; it carries its proportions, the run's number and the tab's title."""
-        figure = self.figure(together(found.run, found.pins), found)
+        """Make the figure; it carries its proportions, the run's number and the tab's title.
+
+        The strip of results names the run's methods in their colours: their legend goes, but in a view alone.
+        """
+        figure = self._complete(found)
+        if not self.frame.layout().alone:
+            style.without_legend(figure, [method.method.name for method in found.run.methods], self.width_px)
+        return self._carrying(figure, found)
+
+    def _complete(self, found: Shown) -> PlotlyFigure:
+        both = together(found.run, found.pins)
+        figure = self.figure(both, found)
         restyled(figure, found.run, found.pins)
+        without_hidden(figure, [found.display.state_of(one.method.name) == "hidden" for one in both.methods])
+        return figure
+
+    def _carrying(self, figure: PlotlyFigure, found: Shown) -> PlotlyFigure:
         carried = {"aspect": self._on_screen, "run": found.number, "view": self.title}
         figure["layout"]["meta"] = figure["layout"]["meta"] | carried
         return enlarged(figure, self.frame.layout().scale)
@@ -94,4 +109,4 @@ class PlotlyView(PictureView[PlotlyFigure]):
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the figure to be saved."""
         del plot
-        return self.picture(found), []
+        return self._carrying(self._complete(found), found), []

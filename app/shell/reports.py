@@ -98,5 +98,7 @@ def view_names(kinds: Sequence[type[View]]) -> dict[str, str]:
 
 
 def views_element(kinds: Sequence[type[View]]) -> str:
-    """HTML that tells the page's script these names."""
-    return f'<div id="sb-views" hidden data-names="{escape(json.dumps(view_names(kinds)))}"></div>'
+    """HTML that tells the page's scripts these names, and the groups of the tabs, in their order."""
+    names = escape(json.dumps(view_names(kinds)))
+    groups = {kind.title: kind.group for kind in kinds if kind.place in ("upper", "lower")}
+    return f'<div id="sb-views" hidden data-names="{names}" data-groups="{escape(json.dumps(groups))}"></div>'

@@ -1,4 +1,4 @@
-"""The row of buttons below the title: undo, redo, reset, share, present; what has changed; who presents."""
+"""The buttons of the top bar: undo, redo, reset, search, share, present; what has changed; who presents."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from schuler_bench.shell.reset import RESET_FIELD
 if TYPE_CHECKING:
     import viser
 
+    from schuler_bench.shell.view import Tab
+
 UNDO, REDO, RESET_ALL, SHARE, PRESENT = "undo", "redo", "reset-all", "share", "present"
 """Names of the commands behind the buttons."""
 _ICONS = {
@@ -21,8 +23,10 @@ _ICONS = {
 _WATCHING = "<style>.sb-handle, .sb-handle-scale, .sb-handle-told { display: none; }</style>"
 """For a page that watches: it sees no handle (static/handle.js), for one would do nothing."""
 _PRESENT = Text("Drive alone: other pages of this session watch until you press it again or leave")
-_COMMANDS = Text(
-    '<button class="sb-do" data-palette title="All commands (Ctrl+K); their keys: ?">Commands</button>'
+_SEARCH = Text(
+    '<div data-sb-part="search"><button class="sb-do" data-palette '
+    'title="All commands (Ctrl+K); their keys: ?">'
+    "Find a command <kbd>Ctrl+K</kbd></button></div>"
 )
 _PRESENTING = Text("You present; press to let the other pages take part again")
 
@@ -34,14 +38,17 @@ class Toolbar:
     ----------
     gui : viser.GuiApi
         Of the client.
-    order : float
-        Place in the left column.
+    bar : Tab
+        The top bar.
     """
 
-    def __init__(self, gui: viser.GuiApi, order: float) -> None:
-        self._buttons = gui.add_html("", order=order)
-        self._changed = gui.add_html("", order=order + 0.1)
-        self._banner = gui.add_html("", order=order + 0.2)
+    def __init__(self, gui: viser.GuiApi, bar: Tab) -> None:
+        with bar:
+            self._buttons = gui.add_html("", order=5)
+            self._changed = gui.add_html("", order=20)
+            self._banner = gui.add_html("", order=21)
+            gui.add_html(_SEARCH, order=30)
+            self._shared = gui.add_html("", order=40)
 
     def show(
         self,
@@ -75,37 +82,48 @@ class Toolbar:
                 REDO, Text("Redo"), redo or Text("nothing to redo"), "Ctrl+Shift+Z", redo is not None and free
             ),
             _icon(RESET_ALL, Text("Reset all"), back, "", changed > 0 and free),
+        ]
+        shared = [
             _button(SHARE, Text("Share"), Text("A link that opens this state"), free),
             _button(PRESENT, Text("Present"), _PRESENTING if presents else _PRESENT, free, presents),
-            _COMMANDS,
         ]
-        row = Text(
-            '<div class="sb-row" role="toolbar" aria-label="Commands">{buttons}</div>',
-            buttons=Text.joined("", buttons),
-        )
-        _put(self._buttons, row)
-        text, button = Text("Unchanged since {origin} was opened", origin=origin), ""
+        for handle, name, each in (
+            (self._buttons, Text("Undo and reset"), buttons),
+            (self._shared, Text("Sharing"), shared),
+        ):
+            row = Text(
+                '<div class="sb-row" data-sb-part="row" role="toolbar" aria-label="{name}">{buttons}</div>',
+                name=name,
+                buttons=Text.joined("", each),
+            )
+            _put(handle, row)
+        text, button = Text("Unchanged"), ""
+        told = Text("Unchanged since {origin} was opened", origin=origin)
         if changed:
             text = Text.plural(
-                "{changed} field changed from {origin}",
-                "{changed} fields changed from {origin}",
-                count=changed,
-                changed=changed,
-                origin=origin,
+                "{changed} field changed", "{changed} fields changed", count=changed, changed=changed
             )
+            told = Text("{text} from {origin}", text=text, origin=origin)
         if last is not None:
             name, label, value = last
-            text = Text("{label} was {value}", label=label, value=value)
+            text = told = Text("{label} was {value}", label=label, value=value)
             hint = Text("Reset {label} to {value}", label=label, value=value)
             button = _button(f"{RESET_FIELD} {name}", Text("Reset"), hint, True)
-        words = Text('<span title="{text:html}">{text:html}</span>', text=text)
-        _put(self._changed, Text('<div class="sb-changed">{words}{button}</div>', words=words, button=button))
+        words = Text('<span title="{told:html}">{text:html}</span>', told=told, text=text)
+        _put(
+            self._changed,
+            Text(
+                '<div class="sb-changed" data-sb-part="changed">{words}{button}</div>',
+                words=words,
+                button=button,
+            ),
+        )
 
     def show_banner(self, text: str, drives: bool) -> None:
         """Say who presents; nothing for an empty text."""
         mine, style = (" sb-drives", "") if drives else ("", _WATCHING)
         banner = Text(
-            '{style}<div class="sb-banner{mine}" role="status">{text:html}</div>',
+            '<div class="sb-banner{mine}" data-sb-part="banner" role="status">{text:html}{style}</div>',
             style=style,
             mine=mine,
             text=text,

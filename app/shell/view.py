@@ -27,7 +27,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.commands import Commands
 from schuler_bench.shell.control import Control, Section
 from schuler_bench.shell.editor import Editor
-from schuler_bench.shell.layout import Layout
+from schuler_bench.shell.layout import BAR_PX, STRIP_PX, Layout
 from schuler_bench.shell.opening import Opening
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 Place = Literal["edit", "upper", "lower", "page"]
 """Left tabs with controls; tabs of the upper and of the lower right panel; anywhere, without a tab."""
+Group = Literal["", "network", "run", "decide", "more"]
+"""Tabs of results that stand together behind its name; "more": in a list at the end of their strip."""
 Tab = AbstractContextManager[Any]
 """Widgets that are made inside it stand in the tab."""
 Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
@@ -54,6 +56,8 @@ class Frame:
     ----------
     client : viser.ClientHandle
         The browser.
+    bar : Tab
+        The top bar: widgets that are made inside it stand there, in the order of their numbers.
     session : Session
         Whose work is shown.
     commands : Commands
@@ -75,6 +79,7 @@ class Frame:
     """
 
     client: viser.ClientHandle
+    bar: Tab
     session: Session
     commands: Commands
     editor: Editor
@@ -121,6 +126,8 @@ class View:
         Of its tab; "" for a view without one.
     place : Place
         Where it stands.
+    group : Group
+        Of a tab of the right column.
     look_for : str
         What to look for in it, in one line at the top of a tab of the right column.
     focus : str
@@ -135,6 +142,7 @@ class View:
 
     title: ClassVar[str] = ""
     place: ClassVar[Place] = "page"
+    group: ClassVar[Group] = ""
     look_for: ClassVar[str] = ""
     focus: ClassVar[str] = ""
     alone: ClassVar[tuple[str, ...]] = ()
@@ -290,6 +298,7 @@ def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> 
     )
     first = first.replace("PAGE_STATE", state_id).replace("PAGE_COMMAND", command_id)
     first = first.replace("PAGE_FONT", style.FONT_FAMILY)
+    first = first.replace("BAR_PX", f"{BAR_PX}").replace("STRIP_PX", f"{STRIP_PX}")
     return first + table.CSS + last + style.UPLOT_CSS
 
 

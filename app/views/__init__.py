@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 VIEWS: tuple[str, ...] = (
     "schuler_bench.views.scene",
+    "schuler_bench.views.strip",
     "schuler_bench.views.start",
     "schuler_bench.views.verification",
     "schuler_bench.views.explain",
@@ -31,15 +32,16 @@ VIEWS: tuple[str, ...] = (
     "schuler_bench.views.poles",
     "schuler_bench.views.step",
     "schuler_bench.views.diagram",
-    "schuler_bench.views.misprints",
     "schuler_bench.views.errors",
+    "schuler_bench.views.spectrum",
     "schuler_bench.views.switching",
     "schuler_bench.views.metrics",
-    "schuler_bench.views.compare",
-    "schuler_bench.views.spectrum",
     "schuler_bench.views.requirements",
     "schuler_bench.views.design",
     "schuler_bench.views.tune",
+    "schuler_bench.views.compare",
+    "schuler_bench.views.sweep",
+    "schuler_bench.views.misprints",
     "schuler_bench.views.scenario_text",
 )
 """Packages of the views, in the order of their tabs."""

@@ -9,6 +9,9 @@ from navcore.foundation.units import DEG
 LARGEST_LATITUDE_DEG = 85.0
 """Beyond, the horizontal Earth rate is too small to find north."""
 
+SHORTEST_COARSE_S = 30.0
+"""Least length of a coarse alignment, s: gravity turns by 7.5' cos L with the Earth."""
+
 
 @dataclass(frozen=True)
 class CompassLoop:

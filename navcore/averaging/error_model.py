@@ -28,15 +28,20 @@ FORECAST_STEP_S = 5.0
 """Longest step on the forecast, s: RK4 errs by 1e-13 of the Schuler oscillation a step."""
 
 
-def forecast_errors(forecast: Forecast, standing: np.ndarray, earth: Earth) -> SensorErrors:
-    """Error of a forecast against what perfect sensors feel at rest, in the navigation frame, constant."""
-    wrong = np.concatenate([forecast.gyro, forecast.accel]) - standing_signals(standing, earth)
+def forecast_errors(
+    forecast: Forecast, standing: np.ndarray, earth: Earth, begin_s: float, step_s: float, steps: int
+) -> SensorErrors:
+    """Error of a forecast against what perfect sensors feel at rest, in the navigation frame.
+
+    A row for each of ``steps`` steps from ``begin_s`` on; a constant forecast has one.
+    """
+    wrong = forecast.means(begin_s, step_s, steps) - standing_signals(standing, earth)
     turn = attitude_matrix(standing[PITCH], standing[ROLL], standing[HEADING])
-    return SensorErrors((turn @ wrong[:3])[None, :], (turn @ wrong[3:])[None, :])
+    return SensorErrors(wrong[:, :3] @ turn.T, wrong[:, 3:] @ turn.T)
 
 
 def states_ahead(
-    start: np.ndarray, ahead_s: tuple[float, ...], sensors: SensorErrors, standing: np.ndarray,
+    start: np.ndarray, ahead_s: tuple[float, ...], forecast: Forecast, standing: np.ndarray,
     earth: Earth, law: Law,
 ) -> np.ndarray:  # fmt: skip
     """Error states of the copies at t = 0: the free model at rest, run ahead from the state after alignment.
@@ -47,8 +52,8 @@ def states_ahead(
         State after alignment, SI.
     ahead_s : tuple of float
         How far each copy runs, s.
-    sensors : SensorErrors
-        Errors of the forecast, one row each.
+    forecast : Forecast
+        What the copies feel.
     standing : ndarray, shape (15,)
         Row of truth of the vehicle at rest.
     earth : Earth
@@ -69,6 +74,7 @@ def states_ahead(
         if steps > 0:
             h = wait / steps
             recorder = make_recorder(steps, h, wait)
+            sensors = forecast_errors(forecast, standing, earth, now, h, steps)
             run = ErrorModelRun(h, steps, at_rest, sensors, _no_reference(), law, x, recorder)
             while not run.advance(steps + 1):
                 pass
@@ -160,8 +166,7 @@ def start_error_model(
         Of a free method.
     """
     copies = plan.copies
-    wrong = forecast_errors(plan.forecast, plan.standing, earth)
-    states = states_ahead(start, copies.ahead_s, wrong, plan.standing, earth, law)
+    states = states_ahead(start, copies.ahead_s, plan.forecast, plan.standing, earth, law)
     groups = [copies.level] if copies.level == copies.slow else [copies.level, copies.slow]
     runs = tuple(
         ErrorModelRun(

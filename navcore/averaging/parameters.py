@@ -33,6 +33,27 @@ class Averaging(Parameters):
         json_schema_extra={"label": Text("24 h line too")},
     )
 
+    order: int = quantity(
+        0,
+        ge=0,
+        le=3,
+        label=Text("order of the fit"),
+        help=Text(
+            "Of the polynomial that is fitted to the alignment record by least squares and extrapolated "
+            "(Zhao 18 to 21). 0: its mean. A line already carries the noise of 600 s to degrees per hour "
+            "after 12 h."
+        ),
+    )
+    segments: Literal["turned", "shifted"] = choice(
+        "turned",
+        label=Text("parts of the record"),
+        help=Text(
+            "How the parts between small motions of the base are brought together. turned: into one "
+            "attitude, by the gyros. shifted: onto the fit of the last part (Zhao 26 as printed), so that it "
+            "alone counts."
+        ),
+    )
+
 
 class AlignmentMotion(EitherUnit):
     """Small motion of the base while the record is taken from which the future is forecast (Zhao, fig. 3)."""

@@ -26,6 +26,8 @@ class Plan:
         Copies and groups.
     forecast : Forecast
         Forecast IMU signals in the body axes of t = 0.
+    record : ndarray, shape (seconds, 6)
+        Alignment record that it was made from: increments over each second.
     standing : ndarray, shape (15,)
         Row of truth of the vehicle before t = 0.
     notices : tuple of str
@@ -34,6 +36,7 @@ class Plan:
 
     copies: Copies
     forecast: Forecast
+    record: np.ndarray
     standing: np.ndarray
     notices: tuple[str, ...]
 
@@ -76,9 +79,10 @@ def prepare_averaging(
     """
     standing = standing_row(true_row)
     record = alignment_record(imu, standing, duration_s, motions, earth, seed)
-    forecast = forecast_from(record, RECORD_STEP_S)
+    shifted = averaging.segments == "shifted"
+    forecast = forecast_from(record, RECORD_STEP_S, averaging.order, shifted)
     chosen = copies_of(averaging, omega_s, float(standing[LAT]), float(standing[HEIGHT]), earth)
-    return Plan(chosen, forecast, standing, _notices(chosen, forecast, imu, len(record)))
+    return Plan(chosen, forecast, record, standing, _notices(chosen, forecast, imu, len(record)))
 
 
 def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tuple[str, ...]:
@@ -93,6 +97,19 @@ def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tupl
                 seconds_2=seconds * RECORD_STEP_S,
             )
         )
+    if len(forecast.growth):
+        ahead_s = max(chosen.ahead_s)
+        change = forecast.at(np.array([ahead_s]))[0, :3] - forecast.gyro
+        messages.append(
+            Text(
+                "the fit of order {order} moves the forecast of the gyros by {change:.2g} °/h within "
+                "{hours:.1f} h",
+                order=len(forecast.growth),
+                change=float(np.abs(change).max()) / DEG_PER_HOUR,
+                hours=ahead_s / HOUR,
+            )
+        )
+        return tuple(messages)
     noise = imu.gyro().white / np.sqrt(still)
     if noise > 0.0:
         messages.append(

@@ -14,7 +14,6 @@ from navcore.motion.inertial import inertial_signals
 from navcore.motion.truth import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_errors.base import Clock
-from navcore.sensors.imu_errors.triad import Triad
 
 RECORD_STEP_S = 1.0
 """Interval of the record's increments (theory.md section 5), s."""
@@ -90,11 +89,33 @@ def alignment_record(
     """
     seconds = max(1, int(duration_s / RECORD_STEP_S + 1e-9))
     true = _true_increments(standing_signals(standing, earth), standing, seconds, motions)
-    parts = [
-        true[:, 3 * i : 3 * i + 3] + _errors(model, true[:, 3 * i : 3 * i + 3], seed)
-        for i, model in enumerate((imu.gyro(), imu.accel()))
-    ]
-    return np.column_stack(parts)
+    clock = Clock(RECORD_STEP_S, seconds, seed, -RECORD_STEP_S * seconds, record=True)
+    return _measured(imu, true / RECORD_STEP_S, clock) * RECORD_STEP_S
+
+
+def sensed_at_rest(
+    imu: Imu, standing: np.ndarray, count: int, step_s: float, earth: Earth, seed: int
+) -> np.ndarray:
+    """Return what the IMU of the run reads after t = 0 if the vehicle stays as it stands: what was forecast.
+
+    With the step of a run on the error model the errors are those of that run.
+
+    Parameters
+    ----------
+    imu, standing, earth, seed
+        As of `alignment_record`.
+    count : int
+        Number of steps.
+    step_s : float
+        Length of a step, s.
+
+    Returns
+    -------
+    ndarray, shape (count, 6)
+        Mean rate (rad/s) and specific force (m/s^2) over each step in body axes.
+    """
+    true = np.tile(standing_signals(standing, earth), (count, 1))
+    return _measured(imu, true, Clock(step_s, count, seed))
 
 
 def _true_increments(
@@ -123,8 +144,9 @@ def _share(motion: AlignmentMotion, time_s: np.ndarray) -> np.ndarray:
     return 0.5 - 0.5 * np.cos(math.pi * place)
 
 
-def _errors(triad: Triad, true: np.ndarray, seed: int) -> np.ndarray:
-    """Errors of the increments of three gyros or accelerometers, shape of ``true``."""
-    clock = Clock(RECORD_STEP_S, len(true), seed, -RECORD_STEP_S * len(true), record=True)
-    signal = true / RECORD_STEP_S
-    return (triad.body_errors(signal, clock) + signal @ triad.coupling.T) * RECORD_STEP_S
+def _measured(imu: Imu, true: np.ndarray, clock: Clock) -> np.ndarray:
+    """Rates and specific forces with the errors of gyros and accelerometers, shape of ``true``, SI."""
+    parts = []
+    for model, signal in ((imu.gyro(), true[:, :3]), (imu.accel(), true[:, 3:])):
+        parts.append(signal + model.body_errors(signal, clock) + signal @ model.coupling.T)
+    return np.column_stack(parts)

@@ -42,7 +42,7 @@ def starts_ahead(
     ahead_s : tuple of float
         How far each copy runs, s.
     forecast : Forecast
-        Constant rate and specific force in body axes.
+        Rate and specific force in body axes.
     standing : ndarray, shape (1, 15)
         Row of truth of the vehicle at rest.
     earth : Earth
@@ -51,29 +51,33 @@ def starts_ahead(
         Makes the law of a free method for an interval in seconds.
     """
     starts: list[Start] = [start] * len(ahead_s)
-    signals, now = np.concatenate([forecast.gyro, forecast.accel]), 0.0
+    now = 0.0
     for i in np.argsort(ahead_s):
         wait = ahead_s[i] - now
         samples = math.ceil(wait * FORECAST_RATE_HZ)
         if samples > 0:
-            start = _run_ahead(start, wait, samples, signals, standing, earth, law(wait / samples))
+            start = _run_ahead(start, now, wait, samples, forecast, standing, earth, law(wait / samples))
         now, starts[i] = ahead_s[i], start
     return starts
 
 
 def _run_ahead(
     start: Start,
+    now_s: float,
     wait_s: float,
     samples: int,
-    signals: np.ndarray,
+    forecast: Forecast,
     standing: np.ndarray,
     earth: Earth,
     law: Law,
 ) -> Start:
     settings = Settings(samples / wait_s, samples, 1, samples, wait_s)
-    increment = signals * (wait_s / samples)
-    run = start_run(start, settings, earth, law, standing, before=increment)
-    increments = np.tile(increment, (min(samples, _FORECAST_CHUNK), 1))
+    step_s = wait_s / samples
+    before = forecast.means(now_s - step_s, step_s, 1)[0] * step_s
+    increments = forecast.means(now_s, step_s, samples) * step_s
+    run = start_run(start, settings, earth, law, standing, before=before)
+    if len(increments) == 1:  # a constant forecast: the same chunk again and again
+        increments = np.tile(increments, (min(samples, _FORECAST_CHUNK), 1))
     while not run.advance(increments):
         pass
     return state_of(run)

@@ -12,6 +12,7 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.agreement import agreement_warnings
 from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import head_of
 from navcore.io.courses import course_warnings
@@ -265,6 +266,7 @@ def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
         *speed_warnings(recording),
         *stretch_warnings(recording.water, recording.ground, recording.velocity),
         *course_warnings(recording),
+        *agreement_warnings(recording),
         *suspect_warnings(recording),
     ]
     for name, series in recording.quantities().items():

@@ -1,5 +1,7 @@
 """Report on a recorded IMU, for ``schuler check``: rate, span, size of force and turn, which axis is up."""
 
+import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ from navcore.checks.file import Checker, FileReport, check_log
 from navcore.checks.imu_suspects import (
     force_reason,
     outlier_warnings,
+    rocking_warnings,
     still_warnings,
     turn_warnings,
     upward_remedy,
@@ -17,18 +20,22 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.io.column_map import ColumnMap, read_map
-from navcore.io.imu_table import is_imu_table
+from navcore.io.containers import is_container, open_container
+from navcore.io.imu_table import is_imu_names, is_imu_table
 from navcore.io.source import require_file
 from navcore.sensors.recorded_imu import ImuRecord, is_psins, read_imu, upward_axis
 
 _GRAVITY = 9.76, 9.84
 """From the equator at 5 km to the poles, m/s^2."""
 _FORCE_ERROR = 0.02
-_SLOWEST_HZ = 10.0
+_SLOWEST_HZ, _FASTEST_HZ = 10.0, 2500.0
+_STEADY = 0.8, 1.25
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    """Whether a file that begins so is a recorded IMU: PSINS text, or a CSV that names its quantities."""
+    """Whether a file that begins so is a recorded IMU: PSINS text, or a table that names its quantities."""
+    if is_container(head, path):
+        return is_imu_names(open_container(path).names)
     text = head.decode("utf-8", errors="replace")
     return (is_psins(text) and _numbers_below(text)) or is_imu_table(text)
 
@@ -46,7 +53,7 @@ def _numbers_below(text: str) -> bool:
 def check_imu(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     """Read a recorded IMU, its axes as they are; gaps, NaN, time running backwards raise `InputError`."""
     record = read_imu(path, column_map=column_map)
-    kind = "recorded IMU, PSINS" if record.lat is not None else "recorded IMU, CSV"
+    kind = Text("recorded IMU, {kind}", kind=record.kind)
     details = _details(record)
     warnings = (
         *record.warnings,
@@ -54,6 +61,7 @@ def check_imu(path: Path, column_map: ColumnMap | None = None) -> FileReport:
         *turn_warnings(details["mean_turn_size_dph"]),
         *still_warnings(record),
         *outlier_warnings(record),
+        *rocking_warnings(record),
     )
     return FileReport(str(path), kind, details, tuple(_text(details)), warnings)
 
@@ -61,18 +69,24 @@ def check_imu(path: Path, column_map: ColumnMap | None = None) -> FileReport:
 IMU_CHECKER = Checker(recognises, check_imu)
 
 
-def check_mapped(file: str, map_file: str) -> FileReport:
-    """Say what a text table holds by a map: an IMU where the map names its quantities, else a log."""
+def check_mapped(file: str | os.PathLike[str], mapped: str | os.PathLike[str] | ColumnMap) -> FileReport:
+    """Say what a table holds by a map, or the file of one: an IMU where it names one, else a log."""
     try:
-        path, column_map = require_file(file), read_map(map_file)
-        return check_imu(path, column_map) if column_map.is_imu else check_log(path, column_map)
+        column_map = mapped if isinstance(mapped, ColumnMap) else read_map(mapped)
+        path = require_file(file)
+        report = check_imu(path, column_map) if column_map.is_imu else check_log(path, column_map)
     except InputError as error:
-        return FileReport(file, "", faults=error.faults)
+        return FileReport(str(file), "", faults=error.faults)
+    if isinstance(mapped, ColumnMap):
+        return report
+    told = Text("  read by the map {name}", name=Path(mapped).name)
+    return replace(report, text=(told, *report.text))
 
 
 def _details(record: ImuRecord) -> dict[str, Any]:
     mean = record.increments.mean(axis=0) * record.rate_hz
     force, turn = mean[3:], mean[:3]
+    sizes = record.increments[:, 3:] * record.rate_hz
     place = None
     if record.lat is not None and record.lon is not None and record.height is not None:
         place = {
@@ -88,6 +102,7 @@ def _details(record: ImuRecord) -> dict[str, Any]:
         "place": place,
         "mean_force_mps2": [round(float(value), 5) for value in force],
         "mean_force_size_mps2": round(float(np.linalg.norm(force)), 5),
+        "median_force_size_mps2": round(float(np.median(np.linalg.norm(sizes, axis=1))), 5),
         "mean_turn_dph": [round(float(value) / DEG_PER_HOUR, 4) for value in turn],
         "mean_turn_size_dph": round(float(np.linalg.norm(turn)) / DEG_PER_HOUR, 4),
         "up_axis": upward_axis(force),
@@ -156,6 +171,19 @@ def _warnings(details: dict[str, Any]) -> list[str]:
                 'imu.axes = "{axes}"',
                 up=up,
                 axes=upward_remedy(up),
+            )
+        )
+    if details["rate_hz"] > _FASTEST_HZ:
+        told = Text("{rate_hz:g} Hz is fast for an IMU: is the time in minutes?", rate_hz=details["rate_hz"])
+        warnings.append(told)
+    middle = details["median_force_size_mps2"]
+    if not _STEADY[0] < middle / size < _STEADY[1]:
+        warnings.append(
+            Text(
+                "the size of the specific force is {middle:.4g} m/s² as a median, that of its mean "
+                "{size:.4g}: strong shaking, or a wrong unit of one accelerometer",
+                middle=middle,
+                size=size,
             )
         )
     if details["rate_hz"] < _SLOWEST_HZ:

@@ -6,8 +6,10 @@ from typing import ClassVar
 from navcore.damping.base import Configured, Need, NetworkDamping
 from navcore.damping.external import External
 from navcore.damping.internal import Internal
+from navcore.foundation.earth import EARTH_RATE, SPHERE
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.foundation.units import DEG_PER_HOUR
 from navcore.networks.base import LinearNetwork
 
 _UNITY = 1e-3
@@ -66,8 +68,9 @@ class _Whole(NetworkDamping):
         if not self.uses_log:
             yield Text(
                 "internal azimuth network: a speed V north leaves a heading rate Y'(0) Ω cos L V/R, "
-                "Y'(0) = {slope:.5g} s",
+                "Y'(0) = {slope:.5g} s: {rate:.3g} °/h times cos L for each m/s",
                 slope=network.h_slope,
+                rate=network.h_slope * EARTH_RATE / SPHERE.radii(0.0)[0] / DEG_PER_HOUR,
             )
 
 

@@ -121,9 +121,7 @@ def designs(
     found = outcomes(scenario, methods, range(seeds), part_of(progress, share, 1.0), cancelled)
     stopped = early or (cancelled is not None and cancelled())
     if not found:
-        raise StoppedError(
-            Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
-        )
+        raise _too_early(seeds)
     shares = _judged(scenario, methods, found)
     result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
     return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
@@ -140,10 +138,14 @@ def _few(scenario: Scenario, methods: Sequence[Method], seeds: int) -> int:
     each_s = estimated_seconds(scenario.model_copy(update={"method": tuple(methods)}))
     few = min(seeds, _FEW, int(_AFTER_STOP_S / each_s))
     if not (methods and few):
-        raise StoppedError(
-            Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
-        )
+        raise _too_early(seeds)
     return few
+
+
+def _too_early(seeds: int) -> StoppedError:
+    return StoppedError(
+        Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
+    )
 
 
 def _judged(scenario: Scenario, methods: Sequence[Method], found: Sequence[Any]) -> tuple[Share, ...]:

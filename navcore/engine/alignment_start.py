@@ -1,10 +1,10 @@
-"""The start of navigation after a simulated compass alignment (theory.md 6.1), and the errors of a start."""
+"""The start of navigation after a simulated alignment (theory.md 6.1), and the errors of a start."""
 
 from dataclasses import replace
 
 import numpy as np
 
-from navcore.alignment.fine import fine_alignment
+from navcore.alignment.fine import coarse_alignment, fine_alignment, turned_by
 from navcore.foundation.compiled import plain
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
@@ -21,7 +21,8 @@ def aligned_start(scenario: Scenario, true_row: np.ndarray) -> Start:
 
     The vehicle swings as it will (`swing`), lies stopped in the same sea (`waves`), or rests at the attitude
     of t = 0. Biases, scale factors and misalignments are those of the navigation; white noise and
-    Gauss-Markov drift are drawn anew.
+    Gauss-Markov drift are drawn anew. With ``alignment.coarse_s`` the record begins with a coarse alignment,
+    from which the compass loop starts.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def aligned_start(scenario: Scenario, true_row: np.ndarray) -> Start:
     Raises
     ------
     InputError
-        |latitude| above 85 deg, or a loop too fast for the IMU.
+        |latitude| above 85 deg, a loop too fast for the IMU, or a coarse alignment that finds no north.
     """
     alignment, rate = scenario.alignment, scenario.run.rate_hz
     samples = max(1, round(alignment.duration_s * rate))
@@ -51,11 +52,15 @@ def aligned_start(scenario: Scenario, true_row: np.ndarray) -> Start:
     increments = np.concatenate([chunk.copy() for chunk, _ in simulation.chunks()])
     errors = np.array(scenario.initial_error.state())
     ends = simulation.truth_rows(2, samples / rate)
+    attitude, lat = start_from(ends[0], errors).quaternion, site.lat + errors[2]
+    if coarse := round(alignment.coarse_s * rate):
+        attitude = turned_by(-errors[4:7], coarse_alignment(increments[:coarse], rate, lat))
+        increments = increments[coarse:]
     aligned = fine_alignment(
         increments,
         rate,
-        start_from(ends[0], errors).quaternion,
-        site.lat + errors[2],
+        attitude,
+        lat,
         site.height,
         scenario.earth,
         alignment.loop(),

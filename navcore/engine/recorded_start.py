@@ -16,23 +16,23 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
-from navcore.io.column_map import read_map
+from navcore.io.column_map import map_beside, read_map
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.motion.truth import HEADING, HEIGHT, LAT, PITCH, ROLL, Site, Truth
 from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling, sampling
-from navcore.sensors.imu import Imu
+from navcore.sensors.imu import RECORDING, Imu
 from navcore.sensors.recorded_imu import ImuRecord, check_rest, read_imu
 
 CHUNK = 6000
 """Samples of a chunk."""
 _COARSE_S = 120.0
+"""Length of the coarse alignment where none is given."""
 _REST_S = 60.0
 """Time from the start in which the force is held against gravity when there is no alignment."""
 _SAME_PLACE_DEG = 0.001
-_NO_ERRORS = ("file", "map", "axes", "begin_s")
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,8 @@ def recorded_imu(scenario: Scenario, start_utc: float | None = None) -> Recorded
         Unreadable, gaps, wrong axes, shorter than skipped part, alignment and run together.
     """
     imu, aligned = scenario.imu, scenario.alignment.kind == "compass"
-    column_map = read_map(imu.map, "imu.map") if imu.map else None
+    map_file = imu.map or map_beside(imu.file or "")
+    column_map = read_map(map_file, "imu.map") if map_file else None
     record: ImuRecord = kept(
         (Text("imu record"), recorded_state(imu), imu.axes),
         lambda: guarded.call("imu.file", read_imu, imu.file or "", imu.axes, column_map),
@@ -167,7 +168,7 @@ def _align(scenario: Scenario, record: ImuRecord, begin: int, first: int, truth:
     window, rate = record.increments[begin:first], record.rate_hz
     errors = scenario.initial_error.state()
     lat, height = float(truth.values[0, LAT]) + errors[2], float(truth.values[0, HEIGHT])
-    coarse = min(round(_COARSE_S * rate), len(window) // 2)
+    coarse = min(round((scenario.alignment.coarse_s or _COARSE_S) * rate), len(window) // 2)
     attitude = coarse_alignment(window[:coarse], rate, lat)
     # A parked vehicle's coarse attitude serves again at the beginning: the loop gets the whole window.
     rest = window if not scenario.motion.recorded else window[coarse:]
@@ -186,7 +187,7 @@ def _notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterator[str]
     unused = [
         f"imu.{name}"
         for name, info in Imu.model_fields.items()
-        if name not in _NO_ERRORS and getattr(scenario.imu, name) != info.default
+        if name not in RECORDING and getattr(scenario.imu, name) != info.default
     ]
     if unused:
         yield Text("{unused} not used: the recorded IMU brings its own errors", unused=", ".join(unused))

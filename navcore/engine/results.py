@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from navcore.engine.measures import metrics
 from navcore.engine.run import Run
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.out import refused, writing
 from navcore.foundation.text import Text
 from navcore.quantities import COMPONENTS
 from navcore.scenario.file import to_toml
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 Format = Literal["parquet", "csv"]
 SCENARIO_FILE, METRICS_FILE, SERIES_STEM = "scenario.toml", "metrics.json", "timeseries"
 OUR_FILES = frozenset({SCENARIO_FILE, METRICS_FILE, f"{SERIES_STEM}.parquet", f"{SERIES_STEM}.csv"})
-_FIELD = "--out"
 
 
 def require_replaceable(folder: str | os.PathLike[str]) -> None:
@@ -37,22 +36,20 @@ def require_replaceable(folder: str | os.PathLike[str]) -> None:
         It is no folder, cannot be looked into, or holds what no run writes; that is named.
     """
     folder = Path(folder)
-    try:
+    with writing(folder):
         if not folder.exists() and not folder.is_symlink():
             return
         if not folder.is_dir():
-            raise _refused(folder, Text("exists and is not a folder"))
+            raise refused(folder, Text("exists and is not a folder"))
         entries = list(os.scandir(folder))
         files = {entry.name for entry in entries if entry.is_file()}
         a_runs = files >= {SCENARIO_FILE, METRICS_FILE} and _exchangeable(folder.resolve())
         foreign = sorted(e.name for e in entries if e.is_dir() or not (a_runs or e.name in OUR_FILES))
-    except OSError as error:
-        raise _cannot(folder, error) from None
     if foreign:
         named = ", ".join(foreign[:3]) + (
             Text(" and {foreign} more", foreign=len(foreign) - 3) if len(foreign) > 3 else ""
         )
-        raise _refused(
+        raise refused(
             folder, Text("would be replaced as a whole, but holds what no run wrote: {named}", named=named)
         )
 
@@ -80,14 +77,12 @@ def write_results(run: Run, folder: str | os.PathLike[str], format: Format = "pa
     """
     require_replaceable(folder)
     target = Path(os.path.realpath(folder))
-    try:
+    with writing(Path(folder)):
         target.parent.mkdir(parents=True, exist_ok=True)
         if _exchangeable(target):
             _exchange(run, target, format)
         else:
             _replace_inside(run, target, format)
-    except OSError as error:
-        raise _cannot(Path(folder), error) from None
 
 
 def timeseries(run: Run) -> pyarrow.Table:
@@ -196,11 +191,3 @@ def _replace_inside(run: Run, target: Path, format: Format) -> None:
             os.replace(complete / name, target / name)
     finally:
         shutil.rmtree(complete, ignore_errors=True)
-
-
-def _refused(folder: Path, reason: str) -> InputError:
-    return InputError(Fault(_FIELD, "", str(folder), reason))
-
-
-def _cannot(folder: Path, error: OSError) -> InputError:
-    return _refused(folder, Text("cannot be written: {strerror}", strerror=error.strerror or error))

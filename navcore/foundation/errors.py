@@ -34,11 +34,11 @@ class Fault:
 
     def __str__(self) -> str:
         """One line: place, field, value, allowed range."""
-        place = ": ".join(_cut(part) for part in (self.where, self.field) if part)
+        place = Text.joined(": ", (_one_line(_cut(part)) for part in (self.where, self.field) if part))
         if self.value is not None:
-            place += f" = {_shorten(self.value)}"
+            value = _one_line(_shorten(self.value))
+            place = Text("{place} = {value}", place=place, value=value) if place else f"= {value}"
         allowed = _cut(self.allowed, _LONGEST_ALLOWED)
-        place = " ".join(place.split())
         return Text("{place}: {allowed}", place=place, allowed=allowed) if place else allowed
 
 
@@ -48,6 +48,11 @@ def _shorten(value: object) -> str:
     except ValueError:
         text = Text("an integer of thousands of digits")  # Python refuses to write it
     return _cut(text)
+
+
+def _one_line(text: str) -> str:
+    line = " ".join(text.split())
+    return text if line == text else line
 
 
 def _cut(text: str, longest: int = _LONGEST_VALUE) -> str:

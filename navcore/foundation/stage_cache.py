@@ -16,6 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+MAP_SUFFIX = ".map.toml"
+"""Ending of the map that is saved beside a recording: ``log.csv.map.toml``."""
 _CACHE_BYTES = 300 * 1024 * 1024
 _owner: ContextVar[Hashable] = ContextVar("owner", default=None)
 
@@ -138,7 +140,8 @@ def file_state(files: Any) -> tuple[tuple[str, int, int], ...]:
 
 
 def recorded_state(block: Any) -> tuple[tuple[str, int, int], ...]:
-    """`file_state` of the recordings and of the map that a block of the scenario names."""
+    """`file_state` of the recordings of a block of the scenario and of their maps, named or beside them."""
     files = getattr(block, "file", None)
     listed = [files] if isinstance(files, str) else list(files or [])
-    return file_state([*listed, *filter(None, [getattr(block, "map", None)])])
+    named = getattr(block, "map", None)
+    return file_state([*listed, *([named] if named else (file + MAP_SUFFIX for file in listed))])

@@ -18,7 +18,7 @@ import re
 import tomllib
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 from zoneinfo import ZoneInfo
 
 from pydantic import Field, ValidationError
@@ -26,6 +26,7 @@ from pydantic import Field, ValidationError
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import Parameters
+from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
 from navcore.io.column_names import QUANTITIES, Column, known_columns, plain_name
 from navcore.io.columns import listed
@@ -35,6 +36,7 @@ from navcore.io.written_units import UNITS, unit_of, written
 LARGEST_MAP_BYTES = 65536
 GPS_WEEK = "gps_week_s"
 ISO = "iso"
+_SCALE = re.compile(r"\s*\d{1,9}(?:\.\d{0,15})?(?:[eE][+-]?\d{1,2})?\s+(?=\S)")
 _OFFSET = re.compile(r"(?:UTC|GMT)?([+-])(\d\d?)(?::?(\d\d))?")
 
 
@@ -62,6 +64,11 @@ class TimeMap(Parameters):
         return (self.column,) if isinstance(self.column, str) else self.column
 
     @property
+    def stated(self) -> bool:
+        """Whether the map says how the time is written; else it is guessed."""
+        return bool(self.unit or self.zone)
+
+    @property
     def numeric(self) -> str:
         """Key of `UNITS` for a column of numbers; empty for others."""
         return unit_of(plain_name(self.unit), "time") if "%" not in self.unit else ""
@@ -75,7 +82,8 @@ class QuantityMap(Parameters):
     column : str
         Name in the header.
     unit : str
-        Of its numbers; empty: that of the quantity's own name (``heading_deg``) or of the column's.
+        Of its numbers, after a number that counts are multiplied by (``0.1 arcsec``); empty: that of the
+        quantity's own name (``heading_deg``) or of the column's.
     sign : int
         1, or -1 for a column that counts the other way.
     """
@@ -83,6 +91,17 @@ class QuantityMap(Parameters):
     column: str
     unit: str = ""
     sign: Literal[1, -1] = 1
+
+    @property
+    def factor(self) -> float:
+        """Sign, times the number before the unit."""
+        scale = _SCALE.match(self.unit)
+        return float(self.sign) * (float(scale[0]) if scale else 1.0)
+
+    @property
+    def bare_unit(self) -> str:
+        """Unit without the number before it."""
+        return _SCALE.sub("", self.unit, count=1)
 
 
 class ColumnMap(Parameters):
@@ -142,7 +161,7 @@ class ColumnMap(Parameters):
         """Columns of a log with their signs, by what they hold; the time is not among them."""
         places = self.places(where, header)
         return {
-            stem: (Column(places[e.column], e.column, stem, unit), float(e.sign))
+            stem: (Column(places[e.column], e.column, stem, unit), e.factor)
             for name, e in self.quantity.items()
             for stem, unit in [_meant(name, e)]
         }
@@ -156,9 +175,18 @@ class ColumnMap(Parameters):
             assert meant is not None  # checked by `parse_map`
             unit = _imu_unit(meant, entry)
             found[meant.kind, meant.axis] = ImuColumn(
-                places[entry.column], entry.column, meant.kind, meant.axis, unit, sign=float(entry.sign)
+                places[entry.column], entry.column, meant.kind, meant.axis, unit, sign=entry.factor
             )
         return found
+
+
+def map_field() -> Any:
+    """Declare the field ``map`` that stands beside a block's ``file``."""
+    return Field(
+        default=None,
+        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
+        json_schema_extra={"label": Text("map")},
+    )
 
 
 def read_map(path: str | os.PathLike[str], field: str = "map") -> ColumnMap:
@@ -181,6 +209,12 @@ def read_map(path: str | os.PathLike[str], field: str = "map") -> ColumnMap:
         why = getattr(problem, "strerror", None) or Text("is not UTF-8 text: no map")
         raise InputError(Fault("", field, str(path), why)) from None
     return parse_map(text, file.name)
+
+
+def map_beside(path: str | os.PathLike[str]) -> Path | None:
+    """Map that is saved beside a recording under its name and `MAP_SUFFIX`; None where there is none."""
+    beside = Path(f"{os.fspath(path)}{MAP_SUFFIX}")
+    return beside if beside.is_file() else None
 
 
 def parse_map(text: str, where: str) -> ColumnMap:
@@ -271,7 +305,7 @@ def _meant(name: str, entry: QuantityMap) -> tuple[str, str]:
     """What a quantity's name says, and the unit of its column; empty when it is not known."""
     stem, column = next((s, c) for s, c in known_columns([name]).items() if s in QUANTITIES)
     if entry.unit:
-        return stem, _unit(entry.unit, QUANTITIES[stem].dimension)
+        return stem, _unit(entry.bare_unit, QUANTITIES[stem].dimension)
     if column.unit_given and plain_name(name) not in QUANTITIES[stem].names:
         return stem, column.unit
     said = known_columns([entry.column]).get(stem)
@@ -282,6 +316,6 @@ def _meant(name: str, entry: QuantityMap) -> tuple[str, str]:
 
 def _imu_unit(meant: ImuColumn, entry: QuantityMap) -> str:
     if entry.unit:
-        return _unit(entry.unit, DIMENSIONS[meant.kind])
+        return _unit(entry.bare_unit, DIMENSIONS[meant.kind])
     said = imu_column(0, entry.column)
     return meant.unit or (said.unit if said and said.kind == meant.kind else "")

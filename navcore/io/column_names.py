@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from navcore.io.written_units import UNITS, unit_of, written
+from navcore.io.written_units import UNITS, unit_of, without_brackets, written
 
 UTC, UNIX, SECONDS, DATE, CLOCK = "utc", "unix", "t_s", "date", "clock"
 """Columns of time: a date and time, Unix time, s since the file's own zero; a date and a time apart."""
@@ -106,7 +106,6 @@ _TIMES = {
 }
 _NAMES = {name: stem for stem, quantity in QUANTITIES.items() for name in quantity.names}
 _TIME_NAMES = {name: stem for stem, names in _TIMES.items() for name in names.split()}
-_BRACKETS = re.compile(r"[\[(]([^\[\]()]{1,30})[\])]")
 _SIGNS = re.compile(r"[^a-z0-9]+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
@@ -199,9 +198,8 @@ _LAST = 1000
 
 def _meaning(index: int, name: str) -> tuple[int, Column | None]:
     """Rank (0 the usual name) and what the column holds."""
-    texts = _BRACKETS.findall(name[:80])
-    bracket = _BRACKETS.search(name[:80])
-    plain = plain_name(name[: bracket.start()] if bracket else name)
+    bare, texts = without_brackets(name)
+    plain = plain_name(bare)
     for words, suffix in ((plain, ""), *_without_unit(plain)):
         stem = _IN_MPS.get(words) or _NAMES.get(words) or ""
         time = _TIME_NAMES.get(words) or ""

@@ -7,24 +7,28 @@ import numpy as np
 from navcore.foundation.earth import WGS84
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
-from navcore.io.plausible import KNOT_SLIPS, slip_of
+from navcore.io.plausible import KNOT_SLIPS, MOST_LEGS, slip_of
 from navcore.io.series import Recording, Series
 
 LARGEST_DRIFT = 45.0 * DEG
 """A heading that is farther from the course, as a median, is told."""
 LARGEST_COURSE_ERROR = 20.0 * DEG
 """... and a course over ground that is farther from the track."""
-LARGEST_SPEED_SHARE = 0.25
+LARGEST_SPEED_SHARE = 0.06
 """... and a speed over ground that differs from the track's by more of the larger one."""
 _NEAR = 15.0 * DEG
 _SLOWEST_MPS = 1.0
 _STILL_MPS = 1e-6
+_LEAST_OFF_MPS = 0.3
+"""Positions and speeds are printed coarsely."""
 _LEG_S = 10.0
+_FEWEST_LEGS = 8
+"""Of a short recording, whose legs are shorter."""
 _FEWEST = 3
 _RATIO_SLIP = 0.08
 
 
-class _Way(NamedTuple):
+class Way(NamedTuple):
     """Times (s) and velocity over ground (m/s, E and N) while under way."""
 
     time_s: np.ndarray
@@ -59,12 +63,22 @@ def course_warnings(recording: Recording) -> list[str]:
     return words
 
 
-def _track(position: Series | None) -> _Way | None:
+def under_way(recording: Recording) -> Way | None:
+    """Velocity over ground while under way: the recorded one, else that of the positions."""
+    way = _velocity(recording.velocity)
+    if way is not None:
+        return way
+    legs = _track(recording.position)
+    return None if legs is None else _moving(legs, np.ones(legs.time_s.size, dtype=bool))
+
+
+def _track(position: Series | None) -> Way | None:
     """Velocity of legs of 10 s between positions that share none of the gaps, at any speed."""
     if position is None or position.time_s.size < _FEWEST:
         return None
     time_s = position.time_s
-    leg_s = max(_LEG_S, position.interval_s)
+    span_s = float(np.ptp(time_s))
+    leg_s = max(min(_LEG_S, span_s / _FEWEST_LEGS), position.interval_s, span_s / MOST_LEGS)
     starts = np.searchsorted(time_s, np.arange(time_s[0], time_s[-1], leg_s))
     starts = np.unique(starts[starts < time_s.size])
     lat, lon = position.values[starts, 0], np.unwrap(position.values[starts, 1])
@@ -74,20 +88,20 @@ def _track(position: Series | None) -> _Way | None:
     meridian, prime_vertical = WGS84.radii(float(np.median(lat)))
     east, north = np.diff(lon) * prime_vertical * np.cos(lat[:-1]) / steps, np.diff(lat) * meridian / steps
     whole = steps < 3.0 * leg_s
-    return _Way(*(values[whole] for values in (time_s[starts][:-1] + 0.5 * steps, east, north)))
+    return Way(*(values[whole] for values in (time_s[starts][:-1] + 0.5 * steps, east, north)))
 
 
-def _velocity(velocity: Series | None) -> _Way | None:
+def _velocity(velocity: Series | None) -> Way | None:
     if velocity is None:
         return None
-    return _moving(_Way(velocity.time_s, *velocity.values.T), velocity.valid)
+    return _moving(Way(velocity.time_s, *velocity.values.T), velocity.valid)
 
 
-def _moving(way: _Way, usable: np.ndarray) -> _Way | None:
+def _moving(way: Way, usable: np.ndarray) -> Way | None:
     kept = usable & (np.hypot(way.east, way.north) > _SLOWEST_MPS)
     if np.count_nonzero(kept) < _FEWEST:
         return None
-    return _Way(*(values[kept] for values in way))
+    return Way(*(values[kept] for values in way))
 
 
 def _nearest(time_s: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -97,14 +111,14 @@ def _nearest(time_s: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     return np.where(wanted - time_s[before] < time_s[after] - wanted, before, after)
 
 
-def _beside(time_s: np.ndarray, way: _Way) -> tuple[np.ndarray, np.ndarray] | None:
+def _beside(time_s: np.ndarray, way: Way) -> tuple[np.ndarray, np.ndarray] | None:
     """Samples nearest to those of the way that have one within a leg, and which of the way these are."""
     near = _nearest(time_s, way.time_s)
     close = np.abs(time_s[near] - way.time_s) <= _LEG_S
     return (near[close], close) if np.count_nonzero(close) >= _FEWEST else None
 
 
-def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: _Way, most: float) -> list[str]:
+def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: Way, most: float) -> list[str]:
     beside = _beside(time_s, way)
     if beside is None:
         return []
@@ -141,26 +155,28 @@ def _off(angle: np.ndarray, course: np.ndarray) -> float:
     return float(np.median(np.abs((angle - course + np.pi) % (2.0 * np.pi) - np.pi)))
 
 
-_SLIPS = KNOT_SLIPS | {
+SPEED_SLIPS = KNOT_SLIPS | {
     3.6: Text("m/s taken for km/h, or the reverse"),
     1.0 / 3.6: Text("m/s taken for km/h, or the reverse"),
     1.852: Text("knots taken for km/h, or the reverse"),
     1.0 / 1.852: Text("knots taken for km/h, or the reverse"),
     1.0 / DEG: Text("positions in radians"),
+    1.1508: Text("knots taken for mph, or the reverse"),
+    1.0 / 1.1508: Text("knots taken for mph, or the reverse"),
 }
 """By the speed that is given over the speed of the track."""
 
 
-def _speeds(velocity: Series, track: _Way) -> list[str]:
+def _speeds(velocity: Series, track: Way) -> list[str]:
     beside = _beside(velocity.time_s, track)
     if beside is None:
         return []
     near, close = beside
     given = float(np.median(np.hypot(*velocity.values[near].T)))
     moved = float(np.median(np.hypot(track.east, track.north)[close]))
-    if abs(given - moved) <= max(_SLOWEST_MPS, LARGEST_SPEED_SHARE * max(given, moved)):
+    if abs(given - moved) <= max(_LEAST_OFF_MPS, LARGEST_SPEED_SHARE * max(given, moved)):
         return []
-    slip = slip_of(given / max(moved, _STILL_MPS), _SLIPS, _RATIO_SLIP) or Text("a wrong unit or scale")
+    slip = slip_of(given / max(moved, _STILL_MPS), SPEED_SLIPS, _RATIO_SLIP) or Text("a wrong unit or scale")
     return [
         Text(
             "the speed over ground (median {given:.1f} kn, {source}) is not that of the positions "

@@ -31,7 +31,7 @@ from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
 from navcore.io.mapped_rows import mapped_layout, skip_bad
 from navcore.io.mapped_times import MappedClock
-from navcore.io.rows import Rows
+from navcore.io.rows import Rows, split_line
 from navcore.io.series import Recording
 from navcore.io.source import read_text
 
@@ -48,8 +48,8 @@ def recognises(candidate: Candidate) -> bool:
     separator, _, header = _layout(head)
     if known_columns(header[:MOST_COLUMNS]):
         return True
-    following = [_cells(line, separator) for line in head if not line.startswith(_COMMENTS)][1:6]
-    alike = [row for row in following if len(row) == len(header) and any(map(_is_number, row))]
+    following = [split_line(line, separator) for line in head if not line.startswith(_COMMENTS)][1:6]
+    alike = [row for row in following if len(row) == len(header) and _holds_number(row, separator)]
     return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
 
@@ -79,15 +79,6 @@ def _head(text: str) -> list[str]:
     return [line for line in text[:_HEAD_BYTES].splitlines() if line.strip()][:_HEAD_LINES]
 
 
-def _cells(line: str, separator: str) -> list[str]:
-    if separator == " ":
-        return line.split()
-    try:
-        return next(csv.reader([line], delimiter=separator), [])
-    except csv.Error:
-        return line.split(separator)
-
-
 def _separator(line: str) -> str:
     best = max(_SEPARATORS, key=line.count)
     return best if line.count(best) else " "
@@ -103,16 +94,21 @@ def _layout(head: list[str]) -> tuple[str, str, list[str]]:
     for line in head:
         bare = line.lstrip("#%/ ") if line.startswith(_COMMENTS) else line
         separator = _separator(bare)
-        cells = _cells(bare, separator)
+        cells = split_line(bare, separator)
         known = known_columns(cells[:MOST_COLUMNS])
         if known.keys() & QUANTITIES.keys() and {UTC, UNIX, SECONDS, CLOCK} & known.keys():
             return separator, line, cells
-    return _separator(plain), plain, _cells(plain, _separator(plain))
+    return _separator(plain), plain, split_line(plain, _separator(plain))
 
 
 def layout(text: str) -> tuple[str, str, list[str]]:
     """Separator, header line and header cells of a text."""
     return _layout(_head(text))
+
+
+def _holds_number(row: list[str], separator: str) -> bool:
+    """Whether a cell is a number, also with a decimal comma."""
+    return any(_is_number(cell if separator == "," else cell.replace(",", ".")) for cell in row)
 
 
 def _is_number(cell: str) -> bool:
@@ -134,7 +130,7 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
         clock = column_map.clocks(where, header)
         rows = Rows(header, {stem: column for stem, (column, _) in found.items()}, decimal=column_map.decimal)
         rows.columns[UTC] = Column(clock[0], column_map.time.columns[0], UTC)
-        rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign < 0.0}
+        rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign != 1.0}
         if pairs := pair_faults(where, rows.columns):
             raise InputError(pairs)
     _refuse_size(where, text, len(rows.columns))
@@ -331,7 +327,7 @@ def _timing(
     numbered = [rows.numbers[i] for i in kept]
     name = column.name.lower()
     cells = [rows.cells[column.stem][i] for i in kept]
-    if column_map is not None and (column_map.time.unit or column_map.time.zone):
+    if column_map is not None and column_map.time.stated:
         clock = MappedClock(column_map.time, rows.decimal)
         time_s, dated = clock.read(where, cells, numbered)
         rows.warnings += clock.warnings()

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from navcore.io.series import Recording
 from navcore.io.source import read_text
+
+if TYPE_CHECKING:
+    from navcore.io.column_map import ColumnMap
 
 FORMATS = (
     "navcore.io.tables",
@@ -18,6 +22,8 @@ FORMATS = (
 """Modules that read a format, in the order in which they are asked."""
 _OTHERWISE = "navcore.io.nmea_recording"
 """Says what is expected of a text that no format recognises."""
+_TABLES, _TEXT_TABLES = "navcore.io.tables", "navcore.io.csv"
+"""Those that a map may describe; a text that no format recognises may be such a table too."""
 _HEAD_BYTES = 512
 
 
@@ -30,6 +36,14 @@ class Format(Protocol):
 
     def read(self, path: Path) -> Recording:
         """Read a file of this format; raises `InputError`."""
+        ...
+
+
+class TableFormat(Format, Protocol):
+    """Module of a format of tables."""
+
+    def read(self, path: Path, column_map: ColumnMap | None = None) -> Recording:
+        """Read a table by a map, or by the names of its columns; raises `InputError`."""
         ...
 
 
@@ -57,20 +71,28 @@ class Candidate:
 
 def format_of(path: Path) -> Format:
     """Find the module that reads a file; raises `InputError` for a binary file of no known format."""
-    candidate = Candidate(path)
-    for name in FORMATS:
-        module: Any = import_module(name)
-        if module.recognises(candidate):
-            return module
-    otherwise: Any = import_module(_OTHERWISE)
-    return otherwise
+    found = _recognising(path, FORMATS)
+    return found if found is not None else _module(_OTHERWISE)
 
 
-def takes_map(path: Path) -> bool:
-    """Whether a file is a text table, which a map may describe; raises `InputError` for a binary file."""
+def mapped_format(path: Path) -> TableFormat | None:
+    """Module that reads a table; None for a file of another kind.
+
+    Raises
+    ------
+    InputError
+        A binary file of no known format.
+    """
+    found: Any = _recognising(path, FORMATS)
+    text = found is None or found is _module(_TEXT_TABLES)
+    return _module(_TEXT_TABLES) if text else found if found is _module(_TABLES) else None
+
+
+def _recognising(path: Path, names: Sequence[str]) -> Format | None:
+    """First of these modules that recognises a file."""
     candidate = Candidate(path)
-    for name in FORMATS[:-1]:
-        module: Any = import_module(name)
-        if module.recognises(candidate):
-            return False
-    return True
+    return next((found for found in map(_module, names) if found.recognises(candidate)), None)
+
+
+def _module(name: str) -> Any:
+    return import_module(name)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from navcore.io.column_names import plain_name
-from navcore.io.written_units import UNITS, unit_of, written
+from navcore.io.written_units import UNITS, unit_of, without_brackets, written
 
 RATE, FORCE, ANGLE, VELOCITY = "rate", "force", "angle", "velocity"
 """Kinds: angular rate, specific force, and the increments of angle and velocity of one sample."""
@@ -35,7 +35,6 @@ _OTHERS = frozenset(
     "temperature err error scale offset east north up lat lon quat orientation status".split()
 )
 """Words of columns that are no reading of an IMU."""
-_BRACKETS = re.compile(r"[\[(]([^\[\]()]{1,30})[\])]")
 _TOGETHER = re.compile(r"(da|dv|[gwaf]|gyro?|omega|acc|accel)([xyz])")
 _ROS = re.compile(r"(?:^|_)(?:angular_velocity|linear_acceleration)(?:_|$)")
 """Fields of a ROS message ``sensor_msgs/Imu``, which are in rad/s and m/s^2 by its definition."""
@@ -58,7 +57,7 @@ class ImuColumn:
     unknown : str
         What stands as its unit and is not understood.
     sign : float
-        1 or -1, by which the numbers are multiplied.
+        1 or -1, or the factor of a map, by which the numbers are multiplied.
     """
 
     index: int
@@ -87,8 +86,8 @@ def imu_columns(names: Sequence[str]) -> dict[tuple[str, str], ImuColumn]:
 
 def imu_column(index: int, name: str) -> ImuColumn | None:
     """What a name says; None when it is no column of an IMU."""
-    bracket = _BRACKETS.search(name[:80])
-    plain = plain_name(name[: bracket.start()] if bracket else name)
+    bare, texts = without_brackets(name)
+    plain = plain_name(bare)
     words = plain.split("_")
     for length in range(min(3, len(words) - 1), -1, -1):
         suffix = "_".join(words[len(words) - length :])
@@ -99,7 +98,7 @@ def imu_column(index: int, name: str) -> ImuColumn | None:
         unit = unit_of(suffix, DIMENSIONS[kind]) if suffix else ""
         if suffix and not unit:
             continue
-        said = written(_BRACKETS.findall(name[:80]), DIMENSIONS[kind])
+        said = written(texts, DIMENSIONS[kind])
         strange = said.unknown or (said.unit if said.unit and said.dimension != DIMENSIONS[kind] else "")
         given = "" if strange else said.unit or unit
         if not given and not strange and _ROS.search(plain):

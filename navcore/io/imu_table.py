@@ -10,15 +10,17 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.foundation.units import STANDARD_GRAVITY
 from navcore.io.cells import is_number, times
 from navcore.io.column_map import ColumnMap
-from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
+from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns, plain_name
 from navcore.io.columns import MOST_COLUMNS, listed
+from navcore.io.containers import MOST_UNPACKED_BYTES, Container
 from navcore.io.epochs import numeric_times
 from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
 from navcore.io.mapped_rows import mapped_layout, skipped_text
 from navcore.io.mapped_times import MappedClock
-from navcore.io.written_units import UNITS, G
+from navcore.io.written_units import UNITS
 
 if TYPE_CHECKING:
     import pyarrow
@@ -31,11 +33,14 @@ _HEAD_LINES = 60
 _HEAD_BYTES = 65536
 _CLOCKS = (SECONDS, UNIX, UTC)
 _FEWEST_NAMED = 2
+_FEWEST_SAMPLES = 2
+_INTERVALS = frozenset("dt dt_s ts interval interval_s sample_time sampling_interval".split())
+"""Names of a number that stands for the times of all samples."""
 _SLOWEST_S = 2.0
 """A column of time without a unit whose steps are longer may be in ms, us or ns."""
 _DATED_FROM_S = 1e8
 _GRAVITY_SHARE = 0.05
-_FORCE_UNITS = {"mps2": 1.0, "g": G, "mg": 1e-3 * G}
+_FORCE_UNITS = {unit: UNITS["force"][unit] for unit in ("mps2", "g", "mg")}
 
 
 class ImuTable(NamedTuple):
@@ -51,12 +56,15 @@ class ImuTable(NamedTuple):
         Which of the two.
     warnings : tuple of str
         What was assumed.
+    kind : str
+        What the file is, for people.
     """
 
     time_s: np.ndarray
     values: np.ndarray
     increments: bool
     warnings: tuple[str, ...]
+    kind: str = "CSV"
 
 
 class _Header(NamedTuple):
@@ -69,11 +77,15 @@ class _Header(NamedTuple):
 
 def is_imu_table(head: str) -> bool:
     """Whether the first lines of a text hold a header that names an IMU's quantities."""
-    header = _header(head)
-    found = imu_columns(header.names)
+    return is_imu_names(_header(head).names)
+
+
+def is_imu_names(names: Sequence[str]) -> bool:
+    """Whether the names of a table's columns are an IMU's."""
+    found = imu_columns(names)
     if _kinds(found) is not None:
         return True
-    return len(found) >= _FEWEST_NAMED and not known_columns(header.names).keys() & QUANTITIES.keys()
+    return len(found) >= _FEWEST_NAMED and not known_columns(names).keys() & QUANTITIES.keys()
 
 
 def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) -> ImuTable:
@@ -85,20 +97,52 @@ def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) 
         A column is missing or its unit is not known (names the columns found), or a row is no row of numbers.
     """
     header = _header(text) if column_map is None else _mapped_header(text, column_map)
-    found = imu_columns(header.names) if column_map is None else column_map.imu_columns(source, header.names)
-    kinds, clock = _kinds(found), _clock(header.names, column_map)
+    wanted = _wanted(source, header.names, column_map)
+    cells, raw, skipped = _numbers(text, header, wanted, source)
+    return _of_numbers(source, wanted, cells, raw, skipped)
+
+
+def read_imu_container(held: Container, source: str, column_map: ColumnMap | None = None) -> ImuTable:
+    """Read a Parquet, MAT or npz file as `read_imu_table` does; a single number as time is the interval."""
+    wanted = _wanted(source, held.names, column_map)
+    places = wanted.places
+    try:
+        read = held.fetch(places, wanted.clocks, most_cells=MOST_UNPACKED_BYTES // 8)
+    except InputError as error:
+        raise InputError([Fault(f.where, FIELD, f.field or None, f.allowed) for f in error.faults]) from None
+    sizes = {read[place][0].size for place in places}
+    cells = [read[place][0] for place in wanted.clocks]
+    if len(sizes) != 1 or {cell.size for cell in cells} - sizes - {1}:
+        raise InputError(Fault(source, FIELD, None, Text("the columns differ in length")))
+    size = sizes.pop()
+    if size < _FEWEST_SAMPLES:
+        raise InputError(Fault(source, FIELD, None, Text("holds fewer than two samples")))
+    if len(cells) == 1 and cells[0].size == 1 and cells[0].dtype.kind in "iuf":
+        cells = [float(cells[0][0]) * np.arange(1, size + 1)]
+    raw = np.column_stack([read[place][0].astype(float) for place in places])
+    return _of_numbers(source, wanted, cells, raw, [])._replace(kind=held.kind)
+
+
+def _wanted(source: str, names: Sequence[str], column_map: ColumnMap | None) -> _Wanted:
+    """Columns of time and of the quantities; raises `InputError` where one is missing."""
+    found = imu_columns(names) if column_map is None else column_map.imu_columns(source, list(names))
+    kinds, clock = _kinds(found), _clock(names, column_map)
     if kinds is None or clock is None:
-        raise _missing(source, header, found)
+        raise _missing(source, names, found)
     columns = [found[kind, axis] for kind in kinds for axis in AXES]
     _refuse_unknown(source, [*columns, clock])
-    clocks = [clock.index] if column_map is None else column_map.clocks(source, header.names)
-    rows = _Wanted(clocks, [column.index for column in columns], column_map)
-    cells, raw, skipped = _numbers(text, header, rows, source)
-    mapped = column_map is not None and (column_map.time.unit or column_map.time.zone)
-    if mapped and column_map is not None:
-        time_s, told = _mapped_seconds(cells, column_map, source)
+    clocks = [clock.index] if column_map is None else column_map.clocks(source, list(names))
+    return _Wanted(clock, clocks, columns, kinds != PAIRS[0], column_map)
+
+
+def _of_numbers(
+    source: str, wanted: _Wanted, cells: list[np.ndarray], raw: np.ndarray, skipped: list[int]
+) -> ImuTable:
+    """Columns of time and the six others, shape (n, 6), in SI."""
+    if wanted.column_map is not None and wanted.column_map.time.stated:
+        time_s, told = _mapped_seconds(cells, wanted.column_map, source)
     else:
-        time_s, told = _seconds(cells[0], clock, source)
+        time_s, told = _seconds(cells[0], wanted.clock, source)
     lost = np.flatnonzero(~np.isfinite(raw).all(axis=1) | ~np.isfinite(time_s))
     if lost.size:
         what = Text(
@@ -106,10 +150,10 @@ def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) 
         )
         raise InputError(Fault(source, FIELD, None, what))
     told += [skipped_text(skipped)] if skipped else []
-    factors, guessed = _factors(columns, raw, source)
+    factors, guessed = _factors(wanted.columns, raw, source)
     if abs(time_s[0]) >= _DATED_FROM_S:
         time_s = time_s - time_s[0]
-    return ImuTable(time_s, raw * factors, kinds != PAIRS[0], (*told, *guessed))
+    return ImuTable(time_s, raw * factors, wanted.increments, (*told, *guessed))
 
 
 def imu_layout(text: str) -> tuple[str, str, list[str]]:
@@ -151,16 +195,19 @@ def _clock(names: Sequence[str], column_map: ColumnMap | None) -> Column | None:
     if column_map is not None:
         return Column(0, column_map.time.columns[0], UTC)
     known = known_columns(names)
-    return next((known[stem] for stem in _CLOCKS if stem in known), None)
+    intervals = (
+        Column(index, name, SECONDS) for index, name in enumerate(names) if plain_name(name) in _INTERVALS
+    )
+    return next((known[stem] for stem in _CLOCKS if stem in known), next(intervals, None))
 
 
-def _missing(source: str, header: _Header, found: dict[tuple[str, str], ImuColumn]) -> InputError:
+def _missing(source: str, names: Sequence[str], found: dict[tuple[str, str], ImuColumn]) -> InputError:
     known = ", ".join(column.name for column in found.values()) or Text("none")
     allowed = Text(
         "needs a header with t_s and gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (rates and "
         "forces, in any unit that the names give), or dax_rad ... dvz_mps (increments); columns found: "
         "{held}; of an IMU: {known}",
-        held=listed(header.names),
+        held=listed(names),
         known=known,
     )
     return InputError(Fault(source, FIELD, None, allowed))
@@ -187,7 +234,9 @@ def _factors(columns: list[ImuColumn], raw: np.ndarray, source: str) -> tuple[np
     if not bare:
         return np.array([column.factor for column in columns]), ()
     size = float(np.linalg.norm(raw[:, 3:].mean(axis=0)))
-    unit = next((u for u, si in _FORCE_UNITS.items() if abs(size * si / G - 1.0) < _GRAVITY_SHARE), "")
+    unit = next(
+        (u for u, si in _FORCE_UNITS.items() if abs(size * si / STANDARD_GRAVITY - 1.0) < _GRAVITY_SHARE), ""
+    )
     unsure = [column for column in bare if column.kind != FORCE or not unit]
     if unsure:
         needed = ", ".join(UNITS[DIMENSIONS[unsure[0].kind]])
@@ -244,11 +293,18 @@ def _seconds(cells: np.ndarray, clock: Column, source: str) -> tuple[np.ndarray,
 
 
 class _Wanted(NamedTuple):
-    """Places of the columns of time and of the six others, and the map that says so."""
+    """The column of time, the places of all of its parts, the six others, and the map that says so."""
 
+    clock: Column
     clocks: list[int]
-    columns: list[int]
+    columns: list[ImuColumn]
+    increments: bool
     column_map: ColumnMap | None
+
+    @property
+    def places(self) -> list[int]:
+        """Places of the six columns."""
+        return [column.index for column in self.columns]
 
     @property
     def decimal(self) -> str:
@@ -299,7 +355,7 @@ def _parsed(body: str, header: _Header, wanted: _Wanted, *, clock_text: bool) ->
         return "skip" if row.text.lstrip().startswith(_COMMENTS) else "error"
 
     number, text = pyarrow.float64(), pyarrow.string()
-    types = {str(index): number for index in wanted.columns}
+    types = {str(index): number for index in wanted.places}
     if clock_text or len(wanted.clocks) > 1:
         types |= {str(index): text for index in wanted.clocks}
     return csv.read_csv(
@@ -309,7 +365,7 @@ def _parsed(body: str, header: _Header, wanted: _Wanted, *, clock_text: bool) ->
         ),
         parse_options=csv.ParseOptions(delimiter=header.separator, invalid_row_handler=rest),
         convert_options=csv.ConvertOptions(
-            include_columns=[str(index) for index in (*wanted.clocks, *wanted.columns)],
+            include_columns=[str(index) for index in (*wanted.clocks, *wanted.places)],
             column_types=types,
             null_values=["nan", "NaN", "NAN"],
             timestamp_parsers=["\0"],
@@ -327,7 +383,7 @@ def _bad_rows(body: str, header: _Header, wanted: _Wanted) -> list[int]:
             continue
         words = line.split(None if header.separator == " " else header.separator)
         if len(words) == len(header.names) and all(
-            is_number(words[i].replace(wanted.decimal, ".")) for i in wanted.columns
+            is_number(words[i].replace(wanted.decimal, ".")) for i in wanted.places
         ):
             continue
         bad.append(number)

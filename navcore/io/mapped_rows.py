@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from navcore.foundation.text import Text
 from navcore.io.cells import is_empty, is_number, is_time
 from navcore.io.column_names import UTC
 from navcore.io.mapped_times import MappedClock
+from navcore.io.rows import split_line
 
 if TYPE_CHECKING:
     from navcore.io.column_map import ColumnMap
@@ -26,7 +26,7 @@ def mapped_layout(head: Sequence[str], column_map: ColumnMap) -> tuple[str, str,
     best: tuple[int, str, str, list[str]] = (-1, ",", "", [])
     for line in head:
         for separator in column_map.delimiter or _SEPARATORS:
-            cells = _cells(line.lstrip(_COMMENTS), separator)
+            cells = split_line(line.lstrip(_COMMENTS), separator)
             count = len(wanted & {cell.strip() for cell in cells})
             if (count, len(cells)) > (best[0], len(best[3])):
                 best = count, separator, line, cells
@@ -35,20 +35,9 @@ def mapped_layout(head: Sequence[str], column_map: ColumnMap) -> tuple[str, str,
     return best[1:]
 
 
-def _cells(line: str, separator: str) -> list[str]:
-    if separator == " ":
-        return line.split()
-    try:
-        return next(csv.reader([line], delimiter=separator), [])
-    except csv.Error:
-        return line.split(separator)
-
-
 def skip_bad(rows: Rows, column_map: ColumnMap) -> None:
     """Leave out, in place, the rows with a time or number that cannot be read; say how many and which."""
-    clock = (
-        MappedClock(column_map.time, rows.decimal) if column_map.time.unit or column_map.time.zone else None
-    )
+    clock = MappedClock(column_map.time, rows.decimal) if column_map.time.stated else None
     bad: set[int] = set()
     for stem, cells in rows.cells.items():
         if stem == UTC:

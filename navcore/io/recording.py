@@ -13,14 +13,14 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.io.column_map import ColumnMap, read_map
-from navcore.io.formats import format_of, takes_map
+from navcore.io.column_map import ColumnMap, map_beside, read_map
+from navcore.io.formats import format_of, mapped_format
 from navcore.io.placeholders import without_zero_places
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.io.source import require_file
 
 PathLike = str | os.PathLike[str]
-NO_TABLE = Text("describes a text table (CSV), and this is none")
+NO_TABLE = Text("describes a table (CSV, Parquet, MAT or npz), and this is none")
 _SLACK_S = 0.01
 _MIXED_DATES = Text("some files give times without a date and some with one: they cannot be joined")
 
@@ -63,11 +63,12 @@ def load(
     Parameters
     ----------
     paths : path or sequence of paths
-        NMEA 0183 or CSV text, Parquet or MAT, told apart by content.
+        NMEA 0183 or CSV text, Parquet, MAT or npz, told apart by content.
     where, field : str
         Place and field that faults about the files name.
     map_file : path, optional
-        Map that says what the columns of the text tables among the files mean.
+        Map that says what the columns of the tables among the files mean; else the one beside each
+        (`map_beside`).
 
     Returns
     -------
@@ -80,24 +81,23 @@ def load(
     """
     parts: list[Recording] = []
     faults: list[Fault] = []
-    map_key, column_map = None, None
-    if map_file is not None:
-        (map_key,), column_map = file_keys(map_file, where, "map"), read_map(map_file)
     taken = 0
     for key in file_keys(paths, where, field):
         path = Path(key[0])
         try:
-            mapped = column_map if column_map is not None and takes_map(path) else None
-            taken += mapped is not None
+            map_key, column_map = _map_of(key, map_file, where)
+            taken += column_map is not None
             parts.append(
                 kept(
-                    ("recording", key, map_key if mapped else None),
-                    lambda path=path, mapped=mapped: guarded.call(path.name, read_recording, path, mapped),
+                    ("recording", key, map_key),
+                    lambda path=path, mapped=column_map: guarded.call(
+                        path.name, read_recording, path, mapped
+                    ),
                 )
             )
         except InputError as error:
             faults += [replace(fault, field=fault.field or field) for fault in error.faults]
-    if column_map is not None and not taken and not faults:
+    if map_file is not None and not taken and not faults:
         faults.append(Fault(where, "map", str(map_file), NO_TABLE))
     if faults:
         raise InputError(faults)
@@ -108,6 +108,15 @@ def load(
         raise InputError(Fault(where, field, None, _MIXED_DATES))
     sources = tuple(source for part in parts for source in part.sources)
     return Recording(**quantities, sources=sources)
+
+
+def _map_of(key: FileKey, map_file: PathLike | None, where: str) -> tuple[FileKey | None, ColumnMap | None]:
+    """Map of a file with its state: the one that is given, or the one beside it."""
+    path = Path(key[0])
+    named = map_file or map_beside(path)
+    if named is None or not kept(("takes map", key), lambda: guarded.call(path.name, takes_map, path)):
+        return None, None
+    return file_keys(named, where, "map")[0], read_map(named)
 
 
 def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "") -> tuple[FileKey, ...]:
@@ -131,14 +140,18 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
 
 
 def read_recording(path: Path, column_map: ColumnMap | None = None) -> Recording:
-    """Read one file by its content, or a text table by a map, without the cache; raises `InputError`."""
+    """Read one file by its content, or a table by a map, without the cache; raises `InputError`."""
     if column_map is None:
         return without_zero_places(format_of(path).read(path))
-    if not takes_map(path):
+    found = mapped_format(path)
+    if found is None:
         raise InputError(Fault(path.name, "map", None, NO_TABLE))
-    from navcore.io import csv
+    return without_zero_places(found.read(path, column_map))
 
-    return without_zero_places(csv.read(path, column_map))
+
+def takes_map(path: Path) -> bool:
+    """Whether a file is a table, which a map may describe; raises `InputError` for a binary file."""
+    return mapped_format(path) is not None
 
 
 def shared_window(series: Iterable[Series], field: str = "file") -> Window:

@@ -1,8 +1,19 @@
 """Rows of a text table before their cells are numbers."""
 
+import csv
 from dataclasses import dataclass, field
 
 from navcore.io.column_names import Column
+
+
+def split_line(line: str, separator: str) -> list[str]:
+    """Cells of one line; a space as separator stands for any white space."""
+    if separator == " ":
+        return line.split()
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:
+        return line.split(separator)
 
 
 @dataclass
@@ -20,6 +31,6 @@ class Rows:
     """Those that do."""
     decimal: str = "."
     signs: dict[str, float] = field(default_factory=dict)
-    """-1 for the columns whose numbers a map turns around."""
+    """Factors of the columns whose numbers a map turns around or scales."""
     skipped: list[int] = field(default_factory=list)
     """Numbers of the rows that a map lets be left out."""

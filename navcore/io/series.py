@@ -10,6 +10,8 @@ from navcore.foundation.text import Text
 
 GAP_FACTOR = 3.0
 """A gap is a distance of two samples beyond this many median intervals."""
+_SAME_S = 1e-3
+"""Readings no farther apart are at one time."""
 LONGEST_REACH_S = 2.0
 """First and last samples of a stream stand for one median interval around them, but never for longer."""
 
@@ -93,13 +95,14 @@ def tidy(
     if time_s.size == 0:
         return None
     flags = np.ones(time_s.size, dtype=bool) if valid is None else valid
-    order = np.argsort(time_s, kind="stable")
-    ordered = time_s[order]
-    first = np.ones(time_s.size, dtype=bool)
-    first[1:] = np.diff(ordered) > 1e-3
-    chosen = order[first]
-    kept = np.where(flags[chosen, None], values[chosen], 0.0)
-    return Series(time_s[chosen], kept, flags[chosen], file, what, dated, tabled)
+    chosen: slice | np.ndarray = slice(None)
+    if not np.all(np.diff(time_s) > _SAME_S):
+        order = np.argsort(time_s, kind="stable")
+        first = np.ones(time_s.size, dtype=bool)
+        first[1:] = np.diff(time_s[order]) > _SAME_S
+        chosen = order[first]
+    kept = values[chosen] if flags.all() else np.where(flags[chosen, None], values[chosen], 0.0)
+    return Series(time_s[chosen].copy(), kept, flags[chosen].copy(), file, what, dated, tabled)
 
 
 @dataclass(frozen=True)
@@ -136,7 +139,7 @@ class StreamReport:
 
 def stream_report(name: str, count: int, used: bool, times: Iterable[float]) -> StreamReport:
     """Rate, span and gaps of the sorted ``times``."""
-    time_s = np.sort(np.fromiter(times, dtype=float))
+    time_s = np.sort(times if isinstance(times, np.ndarray) else np.fromiter(times, dtype=float))
     if time_s.size == 0:
         return StreamReport(name, count, used)
     span = float(time_s[-1] - time_s[0])

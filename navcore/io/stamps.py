@@ -150,6 +150,16 @@ def _clock_s(match: re.Match[str]) -> float:
     return seconds
 
 
+def _iso(text: str) -> float | None:
+    """UTC of ``2018-12-06T00:00:00.6208Z`` and the like, the form of most loggers; None for all others."""
+    if text[-1:] != "Z" or text[4:5] != "-" or text[13:14] != ":":
+        return None
+    try:
+        return datetime.fromisoformat(text).timestamp()
+    except ValueError:
+        return None
+
+
 class StampReader:
     """Reads the stamps of one file, in which all have the same form as a rule.
 
@@ -161,7 +171,7 @@ class StampReader:
 
     def __init__(self, day_first: bool = False) -> None:
         self._day_first = day_first
-        self._last = 0
+        self._order = tuple(range(len(_FORMS)))
 
     def read(self, text: str) -> tuple[Stamp | None, str]:
         """Stamp in the text beside a sentence, and the text without it.
@@ -173,8 +183,9 @@ class StampReader:
         """
         if len(text) < 6:
             return None, text
-        order = (self._last, *(i for i in range(len(_FORMS)) if i != self._last))
-        for index in order:
+        if (seconds := _iso(text.strip())) is not None:
+            return Stamp(seconds), ""
+        for index in self._order:
             pattern, reader = _FORMS[index]
             match = pattern.search(text)
             if match is None:
@@ -184,7 +195,8 @@ class StampReader:
             except LookupError:
                 continue
             # A time of day is found within a dated stamp too: it never becomes the first form tried.
-            self._last = index if stamp.dated else self._last
+            if stamp.dated and index != self._order[0]:
+                self._order = (index, *(i for i in range(len(_FORMS)) if i != index))
             return stamp, text[: match.start()] + text[match.end() :]
         return None, text
 

@@ -10,6 +10,9 @@ LONGEST_STILL_S = 300.0
 """A value that stays the very same for longer is stuck,"""
 STILL_RATIO = 10.0
 """... if it never did for a tenth of that time otherwise: a coarse instrument often repeats itself."""
+SLOWEST_S = 300.0
+"""Between the samples of a log, a gyro or a receiver; more is told."""
+FASTEST_LOG_S = 0.02
 _LARGEST_STEP = {"water": 2.5, "ground": 2.5, "velocity": 5.0, "heading": 20.0 * DEG}
 """m/s and rad from one sample to the next, which no ship does; also the size of a spike."""
 _LONGEST_SPIKE = 15
@@ -26,6 +29,22 @@ def suspect_warnings(recording: Recording) -> list[str]:
     """Say which readings of speeds and heading are stuck or spikes, when, and what to do about them."""
     words: list[str] = []
     for name, series in recording.quantities().items():
+        if name in ("water", "ground") and 0.0 < series.interval_s < FASTEST_LOG_S:
+            words.append(
+                Text(
+                    "{name}: {rate:.4g} samples a second are many for a log: is the time in minutes?",
+                    name=_NAMES[name],
+                    rate=1.0 / series.interval_s,
+                )
+            )
+        if name in _LARGEST_STEP and series.interval_s > SLOWEST_S:
+            words.append(
+                Text(
+                    "{name}: one sample in {interval:.4g} s is slow: is the time in ms, or in another unit?",
+                    name=_NAMES[name],
+                    interval=series.interval_s,
+                )
+            )
         if name not in _LARGEST_STEP or np.count_nonzero(series.valid) < 3 * _LONGEST_SPIKE:
             continue
         kept = np.flatnonzero(series.valid)

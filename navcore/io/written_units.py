@@ -6,10 +6,8 @@
 import re
 from typing import NamedTuple
 
-from navcore.foundation.units import ARCSEC, DEG, KNOT
+from navcore.foundation.units import ARCSEC, DEG, KNOT, MICRO_G, STANDARD_GRAVITY
 
-G = 9.80665
-"""Standard gravity, m/s^2."""
 UNITS = {
     "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "arcsec": ARCSEC},
     "speed": {
@@ -18,7 +16,10 @@ UNITS = {
     "length": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "km": 1e3, "ft": 0.3048, "nm": 1852.0, "mi": 1609.344},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
     "rate": {"rad_s": 1.0, "mrad_s": 1e-3, "deg_s": DEG, "mdeg_s": 1e-3 * DEG, "deg_h": DEG / 3600.0},
-    "force": {"mps2": 1.0, "g": G, "mg": 1e-3 * G, "ug": 1e-6 * G, "gal": 0.01, "fps2": 0.3048},
+    "force": {
+        "mps2": 1.0, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY, "ug": MICRO_G, "gal": 0.01,
+        "fps2": 0.3048,
+    },
 }  # fmt: skip
 """SI over each unit, by dimension."""
 _SPELT = {
@@ -95,6 +96,8 @@ _CONTRARY = frozenset("magnetic mag compass relative local lt".split())
 """Words that make another quantity of a column, whatever unit stands beside them."""
 _STAMP_FORM = re.compile(r"(?:y{2,4}|h{1,2})[ymdhs_tz0-9]{0,40}", re.IGNORECASE)
 _SPELLINGS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "·": " ", "⋅": " ", "µ": "u", "μ": "u"})
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]{1,30})[\])]")
+_LONGEST_NAME = 80
 _SIGNS = re.compile(r"[^a-z0-9]+")
 
 
@@ -114,6 +117,12 @@ class Written(NamedTuple):
     unit: str = ""
     dimension: str = ""
     unknown: str = ""
+
+
+def without_brackets(name: str) -> tuple[str, list[str]]:
+    """Name of a column before its first brackets, and what stands in all of them."""
+    bracket = _BRACKETS.search(name[:_LONGEST_NAME])
+    return name[: bracket.start()] if bracket else name, _BRACKETS.findall(name[:_LONGEST_NAME])
 
 
 def unit_of(words: str, dimension: str) -> str:

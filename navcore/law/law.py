@@ -154,7 +154,7 @@ def _fill_form(
     switching: SwitchingParameters,
 ) -> None:
     """Put the network into the state, in the form in which it runs."""
-    omega_s, law_step_s = float(p["omega_s"]), float(p["law_step"])
+    omega_s, law_step_s = p["omega_s"], p["law_step"]
     tuning = parameters.tuning(omega_s) if policy.tunes or switching.tunes else None
     if policy.follow is not None:
         # filled by the policy at the first call
@@ -166,8 +166,8 @@ def _fill_form(
         p["tuning"]["code"], p["tuning"]["low"] = code, low
         p["tuning"]["values"][: len(values)] = values
         if policy.tunes:
-            p["nominal_xi"] = s["xi_target"] = max(float(p["nominal_xi"]), low)
-        tune(p, s, float(s["xi_target"]))
+            p["nominal_xi"] = s["xi_target"] = max(p["nominal_xi"], low)
+        tune(p, s, s["xi_target"])
     elif p["realisation"] != NETWORK and (gains := parameters.feedback_gains(omega_s)) is not None:
         p["order"], p["feedback_k1"] = 1, gains[0]
         fill_record(s["network"], _feedback(gains, law_step_s))

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-STANDARD_GRAVITY = 9.80665
+from navcore.foundation.units import STANDARD_GRAVITY
+
 LOWEST, HIGHEST = 0.5, 3.0
 """Band of the spectrum that is used, as parts of its peak frequency: 98 % of the energy lies in it."""
 _PEAKEDNESS = 1.25

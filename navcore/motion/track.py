@@ -12,10 +12,11 @@ from pydantic import Field
 from navcore.foundation.earth import WGS84, Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import FileName, quantity
-from navcore.foundation.stage_cache import kept
+from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.io.recording import Window, file_keys, load, require_cover, shared_window
+from navcore.io.column_map import map_field
+from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.motion.base import MotionParameters, Streams
 from navcore.motion.filling import sample
@@ -72,11 +73,7 @@ class TrackMotion(MotionParameters):
         ),
         json_schema_extra={"label": Text("track files")},
     )
-    map: FileName | None = Field(
-        default=None,
-        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
-        json_schema_extra={"label": Text("map")},
-    )
+    map: FileName | None = map_field()
     pitch_deg: float = quantity(
         0.0,
         unit="deg",
@@ -188,8 +185,7 @@ class TrackMotion(MotionParameters):
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
-        map_key = file_keys(self.map, "", "map") if self.map else ()
-        key = Text("smoothed track"), file_keys(files, "", "file"), map_key, self.smoothing_s
+        key = "smoothed track", recorded_state(self), self.smoothing_s
         return kept(key, lambda: _smooth(self.streams(), files, self.smoothing_s))
 
 

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from navcore.alignment.loop import CompassLoop
+from navcore.alignment.loop import SHORTEST_COARSE_S, CompassLoop
 from navcore.averaging import AlignmentMotion
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import Parameters, choice, quantity
@@ -119,9 +119,10 @@ class Alignment(EitherUnit):
     """Block ``alignment``: how navigation gets its first attitude (strapdown).
 
     ``compass`` (theory.md 6.1): the compass loop with V_r = 0, first its level channels, then the azimuth,
-    on a vehicle that does not travel; ``initial_error`` is what it starts from. With a recorded IMU a coarse
-    alignment by the turning gravity vector comes first. The sensors of the alignment are those of the
-    navigation (same biases), so that its result is correlated with their errors.
+    on a vehicle that does not travel; ``initial_error`` is what it starts from. With ``coarse_s`` it starts
+    from a coarse alignment by the turning gravity vector (Deng 2019, 4.1) instead, to which ``initial_error``
+    is added; a recorded IMU always has one. The sensors of the alignment are those of the navigation (same
+    biases), so that its result is correlated with their errors.
     """
 
     kind: Literal["none", "compass"] = choice(
@@ -133,6 +134,17 @@ class Alignment(EitherUnit):
     )
     duration_s: float = quantity(
         600.0, unit="s", ge=10.0, le=86400.0, help=Text("Length of the alignment, before t = 0.")
+    )
+    coarse_s: float = quantity(
+        0.0,
+        unit="s",
+        ge=0.0,
+        le=86400.0,
+        label=Text("coarse alignment"),
+        help=Text(
+            "Length of the coarse alignment with which it begins: gravity, which turns with the Earth, gives "
+            "up and east. The compass loop has the rest. 0: none, the loop starts from initial_error."
+        ),
     )
     level_s: float = quantity(
         120.0, unit="s", gt=0.0, le=86400.0, help=Text("Length of its first part, level channels only.")
@@ -169,7 +181,20 @@ class Alignment(EitherUnit):
         return CompassLoop(self.level_s, self.level_sigma, self.sigma, self.xi)
 
     def faults(self) -> Iterator[Fault]:
-        """Yield the faults of motions that do not lie within the alignment."""
+        """Yield the faults of a coarse alignment and of motions that do not lie within the alignment."""
+        if 0.0 < self.coarse_s < SHORTEST_COARSE_S:
+            allowed = Text(
+                "must be 0 or >= {shortest:g} (s): in less, gravity turns too little with the Earth",
+                shortest=SHORTEST_COARSE_S,
+            )
+            yield Fault("", "alignment.coarse_s", self.coarse_s, allowed)
+        elif self.kind == "compass" and self.coarse_s >= self.duration_s:
+            allowed = Text(
+                "must be < {duration_s:g} (s), the length of the whole alignment: the compass loop needs the "
+                "rest",
+                duration_s=self.duration_s,
+            )
+            yield Fault("", "alignment.coarse_s", self.coarse_s, allowed)
         for i, motion in enumerate(self.motion):
             if motion.t_s < -self.duration_s:
                 yield Fault(

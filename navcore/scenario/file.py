@@ -20,7 +20,8 @@ from navcore.scenario.model import Scenario
 
 _NAMED = {"motion": "kind", "network": "id", "policy": "id", "switching": "id"}
 """Blocks that may be given by their name alone, and the field that bears it."""
-_FILE_FIELDS = tuple((block, field) for block in ("motion", "reference", "imu") for field in ("file", "map"))
+FILE_FIELDS = tuple((block, field) for block in ("motion", "reference", "imu") for field in ("file", "map"))
+"""Block and field of what names recordings."""
 
 
 def presets() -> dict[str, Path]:
@@ -75,7 +76,7 @@ def read(source: str, overrides: Iterable[str] = ()) -> dict[str, Any]:
 
 def resolve_files(data: dict[str, Any], folder: Path) -> None:
     """Make the paths of recordings in a scenario mapping absolute in place; they are relative to a folder."""
-    for block, field in _FILE_FIELDS:
+    for block, field in FILE_FIELDS:
         table = data.get(block)
         if isinstance(table, dict) and field in table:
             table[field] = _resolved(table[field], folder)
@@ -227,18 +228,18 @@ def blocks_to_toml(data: dict[str, Any]) -> str:
 
 def _parts(data: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """A scenario in pieces, each a mapping of its own; their texts one after the other are the whole."""
-    yield {key: value for key, value in data.items() if not _is_table(value) and key != "method"}
+    yield {key: value for key, value in data.items() if not is_table(value) and key != "method"}
     for key, value in data.items():
-        if key != "method" and _is_table(value):
+        if key != "method" and is_table(value):
             yield {key: value}
         for method in value if key == "method" else ():
-            yield {key: [{name: inner for name, inner in method.items() if not _is_table(inner)}]}
-            tables = [(name, inner) for name, inner in method.items() if _is_table(inner)]
+            yield {key: [{name: inner for name, inner in method.items() if not is_table(inner)}]}
+            tables = [(name, inner) for name, inner in method.items() if is_table(inner)]
             tables.sort(key=lambda table: isinstance(table[1], list))
             yield from ({key: {name: inner}} for name, inner in tables)
 
 
-def _is_table(value: Any) -> bool:
+def is_table(value: Any) -> bool:
     """Whether TOML writes it under a heading of its own."""
     return isinstance(value, dict) or (isinstance(value, list) and any(isinstance(v, dict) for v in value))
 
@@ -260,13 +261,13 @@ _kept_as_toml = lru_cache(maxsize=512)(_as_toml)
 
 def names_files(scenario: Scenario) -> bool:
     """Whether a scenario runs on recordings, which lie in files."""
-    return any(getattr(getattr(scenario, block), field, None) for block, field in _FILE_FIELDS)
+    return any(getattr(getattr(scenario, block), field, None) for block, field in FILE_FIELDS)
 
 
 def scenario_hash(scenario: Scenario) -> str:
     """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder."""
     data = scenario.canonical()
-    for block, field in _FILE_FIELDS:
+    for block, field in FILE_FIELDS:
         if data.get(block, {}).get(field):
             data[block][field] = _fingerprints(data[block][field])
     return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()

@@ -1,9 +1,11 @@
 """Blocks ``[[requirement]]``: limits that belong to a scenario."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from navcore.foundation.errors import Fault
+from pydantic import model_validator
+
+from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters, choice
 from navcore.foundation.parameters import quantity as number
 from navcore.foundation.text import Text
@@ -49,6 +51,24 @@ class Requirement(Parameters):
         0.0, unit="h", ge=0.0, le=8760.0, label=Text("from"), help=Text("Time from which the errors count.")
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_its_quantity(cls, data: Any) -> Any:
+        """Refuse the field of the other sense, and a text, by the quantity: its name says the unit."""
+        row = QUANTITIES.get(data.get("quantity", LIMITED[0])) if isinstance(data, dict) else None
+        if row is None:
+            return data
+        named, other = ("at_least", "at_most") if row.sense == ">=" else ("at_most", "at_least")
+        if data.get(other) is not None:
+            allowed = Text("is not for {quantity}: give {named}", quantity=row.key, named=named)
+            raise InputError(Fault("", other, data[other], allowed))
+        if isinstance(data.get(named), str):
+            words = Text("must be a number without a unit")
+            if unit := row.key.rpartition("_")[2] if limit_unit(row.key) != row.size else row.shown:
+                words = Text("must be a number in {unit}, without the unit", unit=unit)
+            raise InputError(Fault("", named, data[named], words))
+        return data
+
     @property
     def sense(self) -> str:
         """Sense of the limit, "<=" or ">="."""
@@ -81,13 +101,10 @@ class Requirement(Parameters):
 
     def faults(self, field: str) -> Iterator[Fault]:
         """Yield what is wrong with the limit; ``field`` names the block."""
-        named, other = ("at_least", "at_most") if self.sense == ">=" else ("at_most", "at_least")
+        named = "at_least" if self.sense == ">=" else "at_most"
         value, row = getattr(self, named), QUANTITIES[self.quantity]
         if value is None:
             yield Fault("", f"{field}.{named}", None, Text("is required"))
         elif value < 0.0 and not row.signed:
             allowed = Text("must be >= 0: {quantity} has no sign", quantity=self.quantity)
             yield Fault("", f"{field}.{named}", value, allowed)
-        if getattr(self, other) is not None:
-            allowed = Text("is not for {quantity}: give {named}", quantity=self.quantity, named=named)
-            yield Fault("", f"{field}.{other}", getattr(self, other), allowed)

@@ -14,6 +14,7 @@ from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import FileName, choice, quantity
 from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
+from navcore.io.column_map import map_field
 from navcore.motion.truth import Truth
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu_errors import TERMS
@@ -34,6 +35,9 @@ else:
     # pydantic takes the fields of the last base first
     _Errors = create_model("_Errors", __base__=TERMS[::-1])
 
+RECORDING = ("file", "map", "axes", "begin_s")
+"""Fields of the block that say which recording is used; the others are errors."""
+
 
 class Imu(_Errors):
     """Block ``imu``: errors of gyros and accelerometers in body axes, measured minus true.
@@ -53,11 +57,7 @@ class Imu(_Errors):
         ),
         json_schema_extra={"label": Text("IMU file")},
     )
-    map: FileName | None = Field(
-        default=None,
-        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
-        json_schema_extra={"label": Text("map")},
-    )
+    map: FileName | None = map_field()
     axes: Axes = choice(
         "rfu",
         help=Text(

@@ -1,12 +1,14 @@
 """A recorded log as the reference: its error is what it says minus the true velocity of the motion."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.io.agreement import agreement_warnings
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, load, require_cover, shared_window
@@ -197,6 +199,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
     else:
         yield from speed_warnings(Recording(track.position, track.recording.velocity, recording.water))
         yield from course_warnings(track.recording)
+        yield from agreement_warnings(replace(track.recording, water=recording.water))
     if track is not None and not along_axes and series.file == track.position.file:
         yield Text(
             "{source}: the log comes from the same receiver as the track, its errors cancel in part",

@@ -1,4 +1,4 @@
-"""Recorded IMUs: PSINS text (integer counts of increments) and CSV (increments or rates), checked.
+"""Recorded IMUs: PSINS text (integer counts of increments) and tables (increments or rates), checked.
 
 Body axes are right, forward, up after reading. PSINS: G. Yan's toolbox; increments of angle in counts of
 ``gf`` arc-seconds and of velocity in counts of ``af`` ug s.
@@ -18,8 +18,9 @@ from navcore.foundation.units import ARCSEC, DEG
 from navcore.io.coarse_stamps import spread
 from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import unpacked
+from navcore.io.containers import is_container, open_container
 from navcore.io.even_stamps import Evenness, evenness
-from navcore.io.imu_table import is_imu_table, read_imu_table
+from navcore.io.imu_table import ImuTable, is_imu_table, read_imu_container, read_imu_table
 
 Axes = Literal[
     "rfu", "frd", "flu", "rbd", "rub", "rdf", "lfd", "lbu", "luf", "ldb", "fur", "fdl",
@@ -54,6 +55,8 @@ class ImuRecord:
         Position if the file gives one, rad, m.
     warnings : tuple of str
         What was assumed of it.
+    kind : str
+        What the file is, for people.
     """
 
     increments: np.ndarray
@@ -63,6 +66,7 @@ class ImuRecord:
     lon: float | None = None
     height: float | None = None
     warnings: tuple[str, ...] = ()
+    kind: str = "PSINS"
 
     @property
     def duration_s(self) -> float:
@@ -73,9 +77,9 @@ class ImuRecord:
 def read_imu(
     path: str | os.PathLike[str], axes: Axes = "rfu", column_map: ColumnMap | None = None
 ) -> ImuRecord:
-    """Read a recorded IMU: PSINS text (``%`` comments) or CSV with a header.
+    """Read a recorded IMU: PSINS text (``%`` comments), CSV with a header, Parquet, MAT or npz.
 
-    CSV columns: a time, three rates and three forces (means over the interval that ends at their time), or
+    Columns: a time, three rates and three forces (means over the interval that ends at their time), or
     three increments of angle and three of velocity, by the names that `navcore.io.imu_columns` knows.
 
     Parameters
@@ -83,9 +87,9 @@ def read_imu(
     path : path
         File.
     axes : Axes
-        Of a CSV, such as ``rfu`` or ``frd``. PSINS files are right-forward-up.
+        Of a table, such as ``rfu`` or ``frd``. PSINS files are right-forward-up.
     column_map : ColumnMap, optional
-        What the columns of a CSV mean.
+        What the columns of a table mean.
 
     Raises
     ------
@@ -100,6 +104,10 @@ def read_imu(
                 largest_file=_LARGEST_FILE >> 20,
             )
             raise InputError(Fault(str(path), "imu.file", None, allowed))
+        with file.open("rb") as stream:
+            held = open_container(file) if is_container(stream.read(_HEAD_BYTES), file) else None
+        if held is not None:
+            return _of_table(read_imu_container(held, str(path), column_map), str(path), axes)
         text = unpacked(file, _LARGEST_FILE, "imu.file").decode("utf-8-sig").replace("\r\n", "\n")
     except (OSError, UnicodeDecodeError) as error:
         binary = isinstance(error, UnicodeDecodeError)
@@ -107,7 +115,7 @@ def read_imu(
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
     if column_map is None and is_psins(text) and not is_imu_table(text):
         return _psins(text, str(path))
-    return _csv(text, str(path), axes, column_map)
+    return _of_table(read_imu_table(text, str(path), column_map), str(path), axes)
 
 
 def is_psins(text: str) -> bool:
@@ -196,8 +204,7 @@ def _psins(text: str, source: str) -> ImuRecord:
     return ImuRecord(counts * factors, 1000.0 / interval_ms, source, lat * DEG, lon * DEG, height)
 
 
-def _csv(text: str, source: str, axes: Axes, column_map: ColumnMap | None) -> ImuRecord:
-    table = read_imu_table(text, source, column_map)
+def _of_table(table: ImuTable, source: str, axes: Axes) -> ImuRecord:
     time_s, _ = spread(table.time_s)
     stamps = _regular(time_s, source)
     interval, told = stamps.interval_s, list(table.warnings)
@@ -211,7 +218,7 @@ def _csv(text: str, source: str, axes: Axes, column_map: ColumnMap | None) -> Im
             )
         )
     values = turned(table.values * (1.0 if table.increments else interval), axes)
-    return ImuRecord(values, 1.0 / interval, source, warnings=tuple(told))
+    return ImuRecord(values, 1.0 / interval, source, warnings=tuple(told), kind=table.kind)
 
 
 def turned(values: np.ndarray, axes: Axes) -> np.ndarray:

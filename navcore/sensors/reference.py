@@ -11,6 +11,7 @@ from pydantic import Field, create_model
 from navcore.foundation.parameters import FileName, Parameters, quantity
 from navcore.foundation.repeated import Repeated
 from navcore.foundation.text import Text
+from navcore.io.column_map import map_field
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
@@ -120,11 +121,7 @@ class Reference(_Errors):
         ),
         json_schema_extra={"label": Text("log files")},
     )
-    map: FileName | None = Field(
-        default=None,
-        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
-        json_schema_extra={"label": Text("map")},
-    )
+    map: FileName | None = map_field()
     speed: Literal["water", "ground"] = Field(
         default="water",
         description=Text(

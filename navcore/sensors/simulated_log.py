@@ -87,18 +87,13 @@ def simulated_errors(
     -------
     ReferenceErrors
     """
-    samples = max(1.0, reference.rate_hz * step_s)
-    interval = samples / reference.rate_hz
-    time_s = np.arange(int(duration_s / interval + 1e-9) + 1) * interval
-    all_parts = reference.all_parts() if parts is None else parts
-    log = _Log(tuple(part for part in all_parts if part.active), reference.frame == "body")
+    samples, interval, time_s = _epochs(reference, duration_s, step_s)
+    log = _active(reference, reference.all_parts() if parts is None else parts)
     own, lsb = log.own(time_s.size, interval, seed, samples)
-    delay_s = sum(part.delay_s for part in log.parts)
-    smoothing_s = sum(part.smoothing_s for part in log.parts)
-    if delay_s == smoothing_s == lsb == 0.0:
+    if log.delay_s == log.smoothing_s == lsb == 0.0:
         error = log.linear_errors(truth, time_s, own)
     else:
-        error = log.delayed_rounded_errors(truth, time_s, own, delay_s, smoothing_s, lsb)
+        error = log.delayed_rounded_errors(truth, time_s, own, lsb)
     error = sum((part.after(time_s) for part in log.parts if part.after), error)
     valid = log_works(reference, truth, time_s)
     still = np.zeros(0, dtype=bool)
@@ -135,25 +130,31 @@ def mean_rounding_of(
         E and N, m/s: none where noise averages rounding out. Of a log that drifts, one for each of several
         paths of its drift, over the square root of their number: their squares add up to a mean square.
     """
-    samples = max(1.0, reference.rate_hz * step_s)
-    interval = samples / reference.rate_hz
-    time_s = np.arange(int(duration_s / interval + 1e-9) + 1) * interval
-    log = _Log(tuple(part for part in reference.all_parts() if part.active), reference.frame == "body")
-    lsb = sum(part.lsb for part in log.parts)
-    if samples > 1.0 and reference.dither >= DITHERED * lsb:
+    samples, interval, time_s = _epochs(reference, duration_s, step_s)
+    log = _active(reference, reference.all_parts())
+    if samples > 1.0 and reference.dither >= DITHERED * log.lsb:
         return time_s, []
     sigma, errors = reference.dither / math.sqrt(samples), []
     still = _Log(tuple(replace(part, white=0.0) for part in log.parts), log.body_frame)
-    delay_s = sum(part.delay_s for part in log.parts)
-    smoothing_s = sum(part.smoothing_s for part in log.parts)
     paths = _PATHS if any(part.markov[0] > 0.0 for part in log.parts) else 1
     for seed in range(paths):
         own, _ = still.own(time_s.size, interval, seed, 1.0)
-        seen, heading, _ = log.readings(truth, time_s, delay_s, smoothing_s, own)
-        error = mean_rounding(seen, lsb, sigma) / math.sqrt(paths)
+        seen, heading, _ = log.readings(truth, time_s, own)
+        error = mean_rounding(seen, log.lsb, sigma) / math.sqrt(paths)
         error = to_navigation(error, heading) if log.body_frame else error
         errors.append(np.broadcast_to(error, (time_s.size, 2)))
     return time_s, errors
+
+
+def _epochs(reference: Reference, duration_s: float, step_s: float) -> tuple[float, float, np.ndarray]:
+    """Samples of the log in one reading, the interval of the readings, s, and their times (m,), s."""
+    samples = max(1.0, reference.rate_hz * step_s)
+    interval = samples / reference.rate_hz
+    return samples, interval, np.arange(int(duration_s / interval + 1e-9) + 1) * interval
+
+
+def _active(reference: Reference, parts: Iterable[LogPart]) -> "_Log":
+    return _Log(tuple(part for part in parts if part.active), reference.frame == "body")
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,12 +169,27 @@ class _Log:
         """Relative error of the measured velocity."""
         return sum(part.scale for part in self.parts)
 
+    @property
+    def delay_s(self) -> float:
+        """Age of what is read, s."""
+        return sum(part.delay_s for part in self.parts)
+
+    @property
+    def smoothing_s(self) -> float:
+        """Time constant of the smoothing, s."""
+        return sum(part.smoothing_s for part in self.parts)
+
+    @property
+    def lsb(self) -> float:
+        """Resolution of the readings, m/s."""
+        return sum(part.lsb for part in self.parts)
+
     def by_motion(self, truth: Truth, time_s: np.ndarray) -> np.ndarray | float:
         """Errors by acceleration and in turns, E and N, m/s; shape (m, 2) or (1, 2), or 0."""
         seconds = sum(part.acceleration_s for part in self.parts)
         error = seconds * horizontal_acceleration(truth, time_s) if seconds else 0.0
         if seconds := sum(part.turn_s for part in self.parts):
-            through = horizontal_state(truth, time_s)[0] - self.water(time_s)
+            through = _true_state(truth, time_s)[0] - self.water(time_s)
             across = through[:, ::-1] * [1.0, -1.0]  # to starboard
             error = error + seconds * heading_rate(truth, time_s)[:, None] * across
         return error
@@ -185,7 +201,7 @@ class _Log:
     def own(self, count: int, interval_s: float, seed: int, samples: float) -> tuple[np.ndarray, float]:
         """Errors in the log's axes, shape (m, 2) or (1, 2), and the rounding that is left."""
         noise = math.hypot(*(part.white for part in self.parts))
-        lsb = sum(part.lsb for part in self.parts)
+        lsb = self.lsb
         if samples > 1.0 and noise >= DITHERED * lsb:
             noise, lsb = math.hypot(noise, lsb / math.sqrt(12.0)), 0.0
         own = sum((part.constant for part in self.parts), np.zeros((1, 2)))
@@ -212,29 +228,27 @@ class _Log:
         truth: Truth,
         time_s: np.ndarray,
         own: np.ndarray,
-        delay_s: float,
-        smoothing_s: float,
         lsb: float,
     ) -> np.ndarray:
         """Errors of readings of an earlier velocity, smoothed and rounded, in the log's axes.
 
         A body log is turned by the present heading.
         """
-        seen, heading, velocity = self.readings(truth, time_s, delay_s, smoothing_s, own)
+        seen, heading, velocity = self.readings(truth, time_s, own)
         read = _rounded(seen, lsb)
         return (to_navigation(read, heading) if self.body_frame else read) - velocity
 
     def readings(
-        self, truth: Truth, time_s: np.ndarray, delay_s: float, smoothing_s: float, own: np.ndarray
+        self, truth: Truth, time_s: np.ndarray, own: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Readings before they are rounded, in the log's axes; present heading and velocity."""
-        measured_at = np.maximum(time_s - delay_s, 0.0)
+        measured_at = np.maximum(time_s - self.delay_s, 0.0)
         velocity, heading = _true_state(truth, time_s)
         then_velocity, then_heading = _true_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_motion(truth, measured_at)
         along_axes = to_ship(seen, then_heading) if self.body_frame else seen
-        return _smoothed(along_axes, time_s, smoothing_s) + own, heading, velocity
+        return _smoothed(along_axes, time_s, self.smoothing_s) + own, heading, velocity
 
 
 def _true_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -44,8 +44,7 @@ def horizontal_acceleration(truth: Truth, time_s: np.ndarray) -> np.ndarray:
     values = truth.values
     if truth.constant:
         return values[:, [AE, AN]]
-    grid_s = truth.step_s * np.arange(len(values))
-    return np.column_stack([np.interp(time_s, grid_s, values[:, axis]) for axis in (AE, AN)])
+    return np.column_stack([_linear(truth, time_s, axis) for axis in (AE, AN)])
 
 
 def heading_rate(truth: Truth, time_s: np.ndarray) -> np.ndarray:
@@ -53,7 +52,13 @@ def heading_rate(truth: Truth, time_s: np.ndarray) -> np.ndarray:
     values = truth.values
     if truth.constant:
         return values[:, HEADING_RATE]
-    return np.interp(time_s, truth.step_s * np.arange(len(values)), values[:, HEADING_RATE])
+    return _linear(truth, time_s, HEADING_RATE)
+
+
+def _linear(truth: Truth, time_s: np.ndarray, column: int) -> np.ndarray:
+    """One column of the truth at times (m,), linear between grid points; shape (m,)."""
+    values = truth.values[:, column]
+    return np.interp(time_s, truth.step_s * np.arange(values.size), values)
 
 
 def _hermite(

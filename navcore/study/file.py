@@ -9,7 +9,7 @@ from typing import Any
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.scenario.file import apply_overrides, presets, read, read_toml, resolve_files
+from navcore.scenario.file import apply_overrides, is_table, presets, read, read_toml, resolve_files
 from navcore.scenario.model import Scenario
 from navcore.study.model import Study
 
@@ -81,8 +81,4 @@ def _ordered(value: Any) -> Any:
         return [_ordered(item) for item in value]
     if not isinstance(value, dict):
         return value
-    tables = {
-        key: isinstance(item, dict) or (isinstance(item, list) and any(isinstance(v, dict) for v in item))
-        for key, item in value.items()
-    }
-    return {key: _ordered(value[key]) for key in sorted(value, key=lambda key: tables[key])}
+    return {key: _ordered(value[key]) for key in sorted(value, key=lambda key: is_table(value[key]))}

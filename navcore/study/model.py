@@ -99,8 +99,12 @@ class Factor(Parameters):
 class Sample(Parameters):
     """Block ``sample``: how the factors with a distribution are drawn together."""
 
-    method: Literal["random", "latin_hypercube", "sobol"] = choice(
-        "sobol", help=Text("random: independent; the others fill the space (scipy.stats.qmc, scrambled).")
+    method: Literal["random", "latin_hypercube", "sobol", "saltelli"] = choice(
+        "sobol",
+        help=Text(
+            "random: independent; the others fill the space (scipy.stats.qmc, scrambled). saltelli: points x "
+            "(factors + 2) draws, from which the summary gives Sobol indices."
+        ),
     )
     points: int = Field(
         default=128, strict=True, ge=1, le=2**30, description=Text("Draws, each with every grid value.")
@@ -175,7 +179,9 @@ class Study(Parameters):
     @property
     def draws(self) -> int:
         """Points that are drawn; 1 where no factor has a distribution."""
-        return self.sample.points if any(factor.drawn for factor in self.factor) else 1
+        drawn = sum(factor.drawn for factor in self.factor)
+        rows = drawn + 2 if self.sample.method == "saltelli" else 1
+        return self.sample.points * rows if drawn else 1
 
     def faults(self) -> Iterator[Fault]:
         """Yield the faults of the whole study."""
@@ -191,6 +197,11 @@ class Study(Parameters):
         if self.sample.method == "latin_hypercube" and self.sample.points > LARGEST_HYPERCUBE:
             allowed = Text('must be <= {most} with "latin_hypercube"', most=LARGEST_HYPERCUBE)
             yield Fault("", "sample.points", self.sample.points, allowed)
+        points = self.sample.points
+        if self.sample.method == "saltelli" and (points < 2 or points & (points - 1)):
+            near = max(2, 1 << points.bit_length())
+            allowed = Text('must be a power of 2 with "saltelli": {near}', near=near)
+            yield Fault("", "sample.points", points, allowed)
         if bool(self.output.series) != bool(self.output.epochs_h):
             missing = "epochs_h" if self.output.series else "series"
             yield Fault(

@@ -49,6 +49,8 @@ class Plan:
     ----------
     grid, random : list of Factor
         Factors with values and those with a distribution.
+    shown : list of list
+        Values of each factor of the grid, as they stand in the results.
     scenario : Scenario
         Of the first setting.
 
@@ -62,7 +64,7 @@ class Plan:
         self.study, self.where = study, where
         self.grid = [factor for factor in study.factor if not factor.drawn]
         self.random = [factor for factor in study.factor if factor.drawn]
-        self._shown = [_shown(factor) for factor in self.grid]
+        self.shown = [_shown(factor) for factor in self.grid]
         self._data = scenario_data(study, where)
         self._made = lru_cache(maxsize=64)(self._make)
         self._checked = [*self._check_values()]
@@ -86,20 +88,23 @@ class Plan:
 
     def at(self, number: int) -> tuple[Setting, int]:
         """Setting of a run, and what is added to ``run.seed``."""
-        places: dict[int, int] = {}
-        for axis, size in zip(reversed(self._axes), reversed(self._sizes), strict=True):
-            number, places[axis] = divmod(number, size)
+        places = self.places(number)
         return tuple(places[axis] for axis in range(len(self.grid) + 1)), places[-1]
 
     def cells(self, numbers: np.ndarray) -> np.ndarray:
         """Return the number of the grid's combination, in the order of `combinations`, for each run, (n,)."""
-        places, left = {}, numbers.astype(np.int64)
-        for axis, size in zip(reversed(self._axes), reversed(self._sizes), strict=True):
-            left, places[axis] = np.divmod(left, size)
+        places = self.places(numbers.astype(np.int64))
         cell = np.zeros(len(numbers), np.int64)
         for k, factor in enumerate(self.grid, 1):
             cell = cell * len(factor.values) + places[k]
         return cell
+
+    def places(self, left: Any) -> dict[int, Any]:
+        """Numbers of the seed (-1), the draw (0) and each grid factor's value (1 ...) of runs."""
+        places = {}
+        for axis, size in zip(reversed(self._axes), reversed(self._sizes), strict=True):
+            left, places[axis] = divmod(left, size)
+        return places
 
     @property
     def cell_count(self) -> int:
@@ -108,12 +113,12 @@ class Plan:
 
     def combinations(self) -> Iterator[dict[str, Any]]:
         """Yield the grid's combinations: column -> value in the results."""
-        for values in product(*self._shown):
+        for values in product(*self.shown):
             yield dict(zip((factor.column for factor in self.grid), values, strict=True))
 
     def values(self, setting: Setting) -> dict[str, Any]:
         """Columns of the factors of a setting."""
-        grid = {f.column: self._shown[k][setting[k + 1]] for k, f in enumerate(self.grid)}
+        grid = {f.column: self.shown[k][setting[k + 1]] for k, f in enumerate(self.grid)}
         random = dict(zip((f.column for f in self.random), self._draw(setting[0]), strict=True))
         return {factor.column: (grid | random)[factor.column] for factor in self.study.factor}
 

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.kernel_files import replacing
+from navcore.foundation.out import refused, writing
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
 from navcore.scenario.file import names_files, scenario_hash
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 STUDY_FILE, RUNS_FILE, SUMMARY_FILE, PARTS = "study.toml", "runs.parquet", "summary.json", "parts"
-_FIELD = "--out"
 _GROUP_ROWS = 65_536
 
 
@@ -68,7 +67,7 @@ class Folder:
                 self._claim(resume)
                 yield
             except BlockingIOError:
-                raise _refused(self.path, Text("is in use by another command")) from None
+                raise refused(self.path, Text("is in use by another command")) from None
             finally:
                 os.close(held)
 
@@ -77,7 +76,7 @@ class Folder:
         foreign = sorted(there - {STUDY_FILE, RUNS_FILE, SUMMARY_FILE, PARTS})
         if foreign:
             named = ", ".join(foreign[:3])
-            raise _refused(self.path, Text("holds what no study wrote: {named}", named=named))
+            raise refused(self.path, Text("holds what no study wrote: {named}", named=named))
         text, study = _identity(self._plan), self.path / STUDY_FILE
         if resume and study.exists():
             before = study.read_text("utf-8")
@@ -87,14 +86,12 @@ class Folder:
                     "own, or leave --resume out to replace them",
                     difference=_difference(before, text),
                 )
-                raise _refused(self.path, allowed)
+                raise refused(self.path, allowed)
             if self.summary() is not None:
                 shutil.rmtree(self._parts, ignore_errors=True)
                 return
         elif self.summary() is None and self.done():
-            raise _refused(
-                self.path, Text("holds unfinished results: --resume goes on; or remove the folder")
-            )
+            raise refused(self.path, Text("holds unfinished results: --resume goes on; or remove the folder"))
         else:
             for name in (SUMMARY_FILE, RUNS_FILE):
                 (self.path / name).unlink(missing_ok=True)
@@ -205,17 +202,3 @@ def _difference(before: str, after: str) -> str:
     old, new = next((pair for pair in pairs if pair[0] != pair[1]), ("", ""))
     nothing = Text("nothing")
     return Text("{old} there, {new} here", old=old or nothing, new=new or nothing)
-
-
-@contextmanager
-def writing(folder: Path) -> Iterator[None]:
-    """Tell what keeps a folder from being written as a fault of ``--out``."""
-    try:
-        yield
-    except OSError as error:
-        reason = Text("cannot be written: {strerror}", strerror=error.strerror or error)
-        raise _refused(folder, reason) from None
-
-
-def _refused(folder: Path, reason: str) -> InputError:
-    return InputError(Fault(_FIELD, "", str(folder), reason))

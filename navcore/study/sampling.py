@@ -12,8 +12,30 @@ _CHUNK = 1024
 
 def unit_point(sample: Sample, dimensions: int, number: int) -> np.ndarray:
     """Return one point of a sample in the unit cube, shape (dimensions,); the others need no memory."""
+    if sample.method == "saltelli":
+        return _saltelli_point(sample, dimensions, number)
     chunk, place = divmod(number, _CHUNK)
     return _chunk(sample, dimensions, chunk)[place]  # pyright: ignore[reportArgumentType]
+
+
+def _saltelli_point(sample: Sample, dimensions: int, number: int) -> np.ndarray:
+    """Of each row of two samples A and B: A, B, and A with one factor after the other from B.
+
+    Saltelli et al. 2010, table 1, as `scipy.stats.sobol_indices` takes it.
+    """
+    row, place = divmod(number, dimensions + 2)
+    both = unit_point(_plain(sample), 2 * dimensions, row)  # pyright: ignore[reportArgumentType]
+    first, second = both[:dimensions], both[dimensions:]
+    if place < 2:
+        return (first, second)[place]
+    point = first.copy()
+    point[place - 2] = second[place - 2]
+    return point
+
+
+@lru_cache(maxsize=8)
+def _plain(sample: Sample) -> Sample:
+    return sample.model_copy(update={"method": "sobol"})
 
 
 @lru_cache(maxsize=8)

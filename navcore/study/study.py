@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from collections.abc import Iterator
@@ -20,11 +19,6 @@ _PART_S = 0.3
 _BLOCK_S = 4.0
 """Work of a block, which one worker does: long enough that neighbours share, short enough for an even end."""
 _LARGEST_BLOCK = 4096
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def carry_out(
@@ -62,7 +56,7 @@ def carry_out(
         return before
     missing = folder.missing()
     left = sum(end - first for first, end in missing)
-    blocks = _blocks(plan, missing, workers)
+    blocks = _blocks(plan, missing, left, workers)
     lock, failed = threading.Lock(), threading.Event()
     done = plan.runs - left
 
@@ -108,8 +102,7 @@ def carry_out(
     return document
 
 
-def _blocks(plan: Plan, missing: list[tuple[int, int]], workers: int) -> Iterator[range]:
-    left = sum(end - first for first, end in missing)
+def _blocks(plan: Plan, missing: list[tuple[int, int]], left: int, workers: int) -> Iterator[range]:
     size = int(min(_BLOCK_S * plan.runs / plan.seconds(), left / (4 * workers), _LARGEST_BLOCK)) + 1
     for begin, end in missing:
         for first in range(begin, end, size):

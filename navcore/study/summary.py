@@ -12,6 +12,7 @@ from navcore.engine.measures import versions
 from navcore.quantities import QUANTITIES
 from navcore.scenario.fields import SCHEMA
 from navcore.study.plan import Plan
+from navcore.study.sensitivity import Sensitivity
 
 QUANTILES, _NAMES = (0.05, 0.5, 0.95), ("q05", "median", "q95")
 MOST_CELLS = 500
@@ -43,8 +44,11 @@ def summary(plan: Plan, runs: Path, status: Literal["complete", "stopped"], done
         order = np.argsort(cells, kind="stable")
         groups += np.split(order, np.searchsorted(cells[order], range(1, len(combinations))))
     found = [_counts(plan, rows, group) for group in groups]
+    drawn = {factor.column: rows.column(factor.column) for factor in plan.random}
+    sensitivity = Sensitivity(plan, rows.run, drawn)
     for key in plan.study.output.metrics:
         values = rows.column(key)
+        _depending(rows, key, values, sensitivity, found[0])
         for group, methods in zip(groups, found, strict=True):
             _measured(rows, key, values, group, methods)
     document: dict[str, Any] = {
@@ -122,6 +126,18 @@ def _measured(
     winners = method[least & alone]
     for k, document in methods.items():
         document["metrics"][key]["best"] = _share(int((winners == k).sum()), len(starts))
+
+
+def _depending(
+    rows: _Rows, key: str, values: np.ndarray, sensitivity: Sensitivity, methods: dict[int, dict[str, Any]]
+) -> None:
+    """Add to each method what moves a metric most, and its Sobol indices where the sample gives them."""
+    chosen = np.nan_to_num(values, nan=np.inf)
+    for k, document in methods.items():
+        own = rows.method == k
+        for name, found in {"tornado": sensitivity.tornado, "sobol": sensitivity.sobol}.items():
+            if one := found(chosen, own):
+                document.setdefault(name, {})[key] = one
 
 
 def _share(count: int, runs: int) -> dict[str, float]:

@@ -52,12 +52,12 @@ def runs() -> Runs:
         (FIGURE_7, ["differs", "agrees"]),
         (
             SHIP,
-            ["agrees"] * 4 + ["differs"] * 3 + ["agrees", "differs", "agrees"] + ["differs"] * 3,
+            ["agrees"] * 4 + ["differs"] * 2 + ["agrees"] + ["differs"] * 2,
         ),
-        (VEHICLE, ["undecided", "agrees", "agrees"]),
+        (VEHICLE, ["agrees", "agrees", "undecided"]),
         (zha.FAST, ["agrees"] * 3 + ["differs"] * 3),
         (zha_roll.INTERNAL, ["agrees"] * 2),
-        (zha_roll.EXTERNAL, ["agrees"] * 2 + ["differs"] * 2),
+        (zha_roll.EXTERNAL, ["agrees"] * 2),
         (zha_roll.LAB, ["agrees"] * 2),
         (zha_drive.DRIVE, ["agrees", "differs", "agrees", "differs"]),
     ],
@@ -129,7 +129,7 @@ def test_sun_small_initial_errors_do_not_change_that_but_better_gyros_do(runs):
         assert np.mean(over_conventional(runs, "overshoot", angle, EQ_8_GYROS)) > 1.0
 
 
-def test_sun_claims_7_and_9_hang_on_the_scale_error_of_the_log(runs):
+def test_sun_the_other_reading_of_pitch_and_heading_hangs_on_the_scale_error_of_the_log(runs):
     def largest(variant: str) -> float:
         return max(float(np.mean(over_conventional(runs, "overshoot", angle, variant))) for angle in ANGLES)
 

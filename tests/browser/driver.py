@@ -22,8 +22,9 @@ from schuler_bench.session.display import Display
 from schuler_bench.session.names import GivenNames
 from schuler_bench.session.session import Session
 from schuler_bench.session.sessions import Sessions
-from schuler_bench.shell.layout import WIDE_FROM_PX, layout_for
+from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.page import Page as OpenPage
+from tests.browser.choosing import Choosing
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
@@ -43,7 +44,7 @@ def _has_callbacks(view: OpenPage) -> bool:
     return visitor in pool._waiting or visitor in pool._running
 
 
-class Bench:
+class Bench(Choosing):
     """The page of one visitor.
 
     Parameters
@@ -128,14 +129,6 @@ class Bench:
     def dialog(self, name: str) -> Locator:
         """The dialog of this title."""
         return self.page.get_by_role("dialog", name=self.said(name))
-
-    def tab(self, *names: str) -> None:
-        """Bring tabs to the front; wait until the page holds what they show."""
-        for name in names:
-            tab = self.page.get_by_role("tab", name=self.said(name), exact=True)
-            if tab.get_attribute("aria-selected") != "true":
-                tab.click()
-                self.heard()
 
     # A control is named by its field's key in the scenario file, such as "network.xi" (tests.browser.fields);
     # one that stands for no field by its label.
@@ -281,8 +274,8 @@ class Bench:
         """Give the window another size and wait until the page is laid out anew."""
         width, height = size
         self.page.set_viewport_size({"width": width, "height": height})
-        right, panels = layout_for(width, height).right_px, 2 if width >= WIDE_FROM_PX else 1
-        self.page.wait_for_function("look.laidOut", arg=[panels, right])
+        layout = layout_for(width, height)
+        self.page.wait_for_function("look.laidOut", arg=[1 + layout.two, layout.right_px])
         self.heard()
 
     def settle(self) -> None:

@@ -119,7 +119,8 @@ look.reached = () => {
 look.tooWide = () => [...document.querySelectorAll('.sb-lesson')].map(e => e.scrollWidth - e.clientWidth);
 
 look.tabRows = () => {
-  const boxes = [...document.querySelectorAll('[role=tab]')].map(t => t.getBoundingClientRect());
+  const tabs = [...document.querySelectorAll('[role=tab]')].filter(t => t.getClientRects().length > 0);
+  const boxes = tabs.map(t => t.getBoundingClientRect());
   return new Set(boxes.filter(b => b.left < innerWidth / 3).map(b => Math.round(b.top))).size;
 };
 
@@ -134,6 +135,9 @@ look.moved = async ids => {
   }
 };
 
+look.drawnNames = () => [...document.querySelectorAll('.js-plotly-plot')].flatMap(
+  p => p._fullData.filter(t => t.visible === true).map(t => t.name));
+
 look.opacity = () => Number(getComputedStyle(document.querySelector('.js-plotly-plot')).opacity);
 
 // ------------------------------------------------------------ test_page_jobs
@@ -147,6 +151,11 @@ look.bars = () => [...document.querySelectorAll('.js-plotly-plot')]
   .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Design')
   .flatMap(p => p._fullData.filter(t => t.yaxis === 'y').map(t => t.x[2]))
   .reduce((a, b) => a + b, 0);
+
+// Values of each curve of the tab "Sweep".
+look.sweep = () => [...document.querySelectorAll('.js-plotly-plot')]
+  .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Sweep')
+  .flatMap(p => p._fullData.map(t => [...t.y]));
 
 // Bands of the plot of the east velocity, and the sum of the last one's upper edge.
 look.band = () => {
@@ -223,11 +232,12 @@ look.clipped = () => {
     const text = range.getBoundingClientRect();
     let [cut, scrolls] = [text.left < -1 || text.right > innerWidth + 1, false];
     for (let at = parent; at !== document.body; at = at.parentElement) {
-      const {clipPath, overflowX, overflowY} = getComputedStyle(at), box = at.getBoundingClientRect();
+      const {clipPath, overflowX, overflowY, position} = getComputedStyle(at), box = at.getBoundingClientRect();
       if (clipPath !== 'none' || box.width < 2) { cut = false; break; } // for screen readers
       cut ||= overflowX !== 'visible' && (text.left < box.left - 1.5 || text.right > box.right + 1.5);
       scrolls ||= ['auto', 'scroll'].includes(overflowY);
       cut ||= !scrolls && overflowY === 'hidden' && (text.top < box.top - 3 || text.bottom > box.bottom + 3);
+      if (position === 'fixed') break; // what is around it does not cut it
     }
     if (cut) found.push(data.trim());
   }
@@ -286,7 +296,7 @@ look.covered = () => {
   const met = (a, b) => b.width > 1 && a.left < b.right - 0.5 && b.left < a.right - 0.5
     && a.top < b.bottom - 0.5 && b.top < a.bottom - 0.5;
   const seen = l => l.offsetParent !== null && l.getBoundingClientRect().width > 2
-    && !l.closest('[data-sb-kind=slider] + [data-sb-kind=number], [data-sb-kind=hidden]');
+    && !l.closest('[data-sb-kind=slider] + [data-sb-kind=number], [data-sb-kind=hidden], [data-sb-holds~=topbar]');
   const labels = [...document.querySelectorAll('label[for]')].filter(seen);
   const found = [];
   for (const label of labels) {
@@ -327,9 +337,21 @@ look.broken = within => {
 
 // Rows in which the tabs of each panel stand.
 look.rows = () => [...document.querySelectorAll('[role=tablist]')].map(list => {
-  const boxes = [...list.querySelectorAll('[role=tab]')].map(tab => tab.getBoundingClientRect());
+  const tabs = [...list.querySelectorAll('[role=tab]')].filter(tab => tab.getClientRects().length > 0);
+  const boxes = tabs.map(tab => tab.getBoundingClientRect());
   const tops = boxes.map(box => Math.round(box.top));
   return new Set(tops).size;
+});
+
+// Of each strip of results its groups, from left to right: name and tabs.
+look.groups = () => [...document.querySelectorAll('[data-dock-strip]:has([data-sb-group])')].map(strip => {
+  const tabs = [...strip.children].filter(tab => tab.getClientRects().length > 0);
+  const left = tab => tab.getBoundingClientRect().left;
+  return tabs.sort((one, other) => left(one) - left(other)).reduce((groups, tab) => {
+    if (tab.dataset.sbGroup || groups.length === 0) groups.push([tab.dataset.sbGroup, []]);
+    groups.at(-1)[1].push(tab.textContent);
+    return groups;
+  }, []);
 });
 
 look.axes = () => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null)
@@ -634,7 +656,9 @@ look.hidden = element => {
     || box.right > frame.right + 1.5 || box.bottom > frame.bottom + 1.5;
   const told = box => [box.left, box.top, box.right, box.bottom].map(Math.round).join();
   const frames = [];
-  for (let at = element.parentElement; at; at = at.parentElement) {
+  // what is around something fixed does not cut it
+  const inside = at => (getComputedStyle(at).position === 'fixed' ? null : at.parentElement);
+  for (let at = inside(element); at; at = inside(at)) {
     const {overflowX, overflowY} = getComputedStyle(at);
     if (overflowX === 'visible' && overflowY === 'visible') continue;
     const frame = at.getBoundingClientRect(), box = element.getBoundingClientRect();

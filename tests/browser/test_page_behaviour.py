@@ -84,7 +84,7 @@ def test_a_number_may_be_typed_letter_by_letter_through_wrong_ones(fresh: Bench)
 
 def test_warnings_stand_beside_the_network(fresh: Bench) -> None:
     assert any("H(0)" in note for note in fresh.notes)
-    fresh.choose("method", "free")
+    fresh.edit("free")
     fresh.page.get_by_text("undamped", exact=True).first.wait_for()
     assert not any("H(0)" in note for note in fresh.notes)
 
@@ -111,13 +111,45 @@ def test_of_two_sliders_moved_at_once_no_step_is_lost(fresh: Bench, session: Ses
 
 def test_methods_are_added_copied_renamed_and_removed(fresh: Bench, session: Session) -> None:
     names = ["free", "classic2", "fast (compass)", "classic2 2", "classic2 3"]
-    for button, count in (("add", 4), ("copy", 5), ("remove", 4)):
+    buttons = lambda: fresh.button("Add a method"), lambda: fresh.menu("copy"), lambda: fresh.menu("remove")
+    for button, count in zip(buttons, (4, 5, 4), strict=True):
         with fresh.next_run():
-            fresh.button(button).click()
+            button().click()
         assert [method["name"] for method in fresh.metrics["methods"]] == names[:count]
+        assert fresh.page.locator("details.sb-menu").get_attribute("open") is None
     assert fresh.line("/track/method3") is not None
     fresh.choose_and_run("network", "classic3")
-    assert session.scenario.method[session.selected].name == "classic3"
+    assert session.scenario.method[session.selected].name == fresh.edited == "classic3"
+    fresh.menu("copy")  # opens it
+    box = fresh.page.locator(".sb-rename")
+    box.fill("nobody's")
+    box.press("Escape")
+    assert box.input_value() == "classic3" and not box.is_visible()
+    fresh.menu("copy")
+    with fresh.next_run():
+        box.fill("by hand")
+        box.press("Enter")
+    assert session.scenario.method[session.selected].name == fresh.edited == box.input_value() == "by hand"
+    fresh.menu("copy")
+    box.fill("n" * 61)
+    box.press("Enter")
+    assert "method.3.name" in fresh.notice("Not possible")
+    assert fresh.edited == "by hand"
+
+
+def test_chips_choose_a_method_and_hide_its_curves(fresh: Bench, session: Session) -> None:
+    page = fresh.page
+    for key in ("Enter", "Space"):  # a chip that is pressed keeps the focus
+        fresh.chip("free" if key == "Enter" else "classic2").press(key)
+        fresh.settle()
+        assert page.evaluate("() => document.activeElement.innerText") == fresh.edited
+    assert (fresh.edited, session.selected) == ("classic2", 1)
+    for eye, seen in (("Hide classic2", False), ("Show classic2", True)):
+        fresh.button(eye).click()
+        fresh.wait_until(lambda seen=seen: (fresh.line("/track/method1") is not None) == seen)
+        fresh.settle()
+        assert ("classic2" in page.evaluate("look.drawnNames")) == seen
+        assert session.display.state_of("classic2") == ("shown" if seen else "hidden")
 
 
 def test_numbers_are_those_of_the_command_line(fresh: Bench, tmp_path: Path, repo_root: Path) -> None:
@@ -199,9 +231,10 @@ def test_a_fault_of_ours_is_told_and_the_last_picture_stays(
 
 
 def test_text_of_a_user_is_text_everywhere(fresh: Bench) -> None:
-    row = fresh.page.get_by_text("name", exact=True).locator("xpath=ancestor::div[2]")
+    fresh.menu("copy")
     with fresh.next_run():
-        row.locator("input").fill("<img src=x onerror=alert(1)></script>")
+        fresh.page.locator(".sb-rename").fill("<img src=x onerror=alert(1)></script>")
+        fresh.page.locator(".sb-rename").press("Enter")
     fresh.tab("Metrics", "Scenario", "Poles", "Step", "Frequency", "Errors")
     assert fresh.page.locator("img[src=x]").count() == 0
 

@@ -100,7 +100,7 @@ def test_the_help_of_a_control_covers_no_other_control(fresh: Bench) -> None:
     column = [row.bounding_box() or {} for row in rows]
     column = [row for row in column if row["x"] < 40]
     assert len(column) > 10
-    assert not any(overlap(told, row | {"width": 340.0}) for row in column)
+    assert not any(overlap(told, row | {"width": 300.0}) for row in column)
 
 
 def test_the_handle_of_the_bode_plot_stands_on_its_curve(bench: Bench) -> None:
@@ -169,7 +169,7 @@ def test_a_browser_that_blocks_cookies_brings_the_tabs_of_the_address(another: A
 
 def test_forced_colours_leave_legends_and_slider_tracks(fresh: Bench) -> None:
     # names, of which the colour behind them is read
-    shown = """() => Object.fromEntries([[".sb-entry .sb-line", null], [".mantine-Slider-track", "::before"],
+    shown = """() => Object.fromEntries([[".sb-tint", "::before"], [".mantine-Slider-track", "::before"],
       [".mantine-Slider-bar", null], [".mantine-Slider-thumb", null]].map(([where, part]) => [where,
         [...document.querySelectorAll(where)].filter((each) => each.getClientRects().length > 0)
           .map((each) => getComputedStyle(each, part).backgroundColor)]))"""
@@ -179,11 +179,11 @@ def test_forced_colours_leave_legends_and_slider_tracks(fresh: Bench) -> None:
       sample.style.color = "Canvas";
       return getComputedStyle(sample).color;
     }"""
-    curves = fresh.page.evaluate(shown)[".sb-entry .sb-line"]
+    curves = fresh.page.evaluate(shown)[".sb-tint"]
     page.emulate_media(forced_colors="active")
     try:
         held, canvas = page.evaluate(shown), page.evaluate(paper)
-        assert held[".sb-entry .sb-line"] == curves and len(set(curves)) >= 3
+        assert held[".sb-tint"] == curves and len(set(curves)) >= 3
         nothing = {canvas, "rgba(0, 0, 0, 0)"}
         gone = {where: nothing.intersection(found) for where, found in held.items()}
         assert gone == dict.fromkeys(held, set()) and all(held.values())

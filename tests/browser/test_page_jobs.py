@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from navcore.design.designs import designs
+from navcore.quantities import QUANTITIES
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
@@ -15,6 +16,8 @@ from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
 from schuler_bench.views.design.view import BUDGET_OF, CHOICES
 from schuler_bench.views.design.view import FIND as FIND_DESIGNS
+from schuler_bench.views.sweep.view import METRIC
+from schuler_bench.views.sweep.view import SWEEP as RUN_SWEEP
 from schuler_bench.views.tune import finder
 from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
 from schuler_bench.views.tune.view import SEARCH_FOR
@@ -316,3 +319,23 @@ def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(designing: Bench) 
     designing.notice("classic3 from the Pareto fronts")
     assert session.scenario.method[2].network.id == "classic3"
     assert session.undo() and session.scenario == before
+
+
+def test_one_click_sweeps_four_quantities_and_a_change_makes_them_old(short: Bench) -> None:
+    page, sweeper = short.page, short.session.searches.sweeper
+    short.tab("Sweep")
+    page.get_by_text("Sweep: one click runs all methods").wait_for()
+    short.button(RUN_SWEEP).click()
+    page.wait_for_function("() => look.sweep().length === 4 * 3", timeout=120_000)
+    short.wait_until(lambda: sweeper.under_way is None)
+    before = page.evaluate("look.sweep")
+    assert [len(curve) for curve in before] == [
+        len(one.values) for one in sweeper.known.values() for _ in range(3)
+    ]
+    short.choose(METRIC, QUANTITIES["position_max_m"].label)
+    page.wait_for_function("old => look.sweep()[0][0] !== old", arg=before[0][0])
+    assert not page.get_by_text("of an earlier scenario").is_visible()
+    with short.next_run():
+        short.press("network.zeta")
+    page.get_by_text("of an earlier scenario: sweep again").wait_for()
+    sweeper.forget()

@@ -9,7 +9,7 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from navcore.scenario.file import load as load_preset
 from navcore.scenario.model import Scenario
 from schuler_bench.misprints import MISPRINTS
-from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.shell.layout import BAR_PX, STRIP_PX, layout_for
 from schuler_bench.views import load
 from schuler_bench.views.poles.figure import ZOOM
 from tests.browser.conftest import Another
@@ -61,7 +61,8 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         sized.tab(tab)
         page.wait_for_function("look.drawn")
     filled = [found for found in page.evaluate("look.filled") if found is not None]
-    assert filled and min(filled) >= 0.75 * size["height"] / (2 if size["width"] >= WIDE_FROM_PX else 1) - 60
+    panels = 1 + layout_for(size["width"], size["height"]).two
+    assert filled and min(filled) >= 0.9 * (size["height"] - BAR_PX - STRIP_PX) / panels - 60
     assert page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in page.locator("pre").first.inner_text()
 
@@ -89,6 +90,36 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
     why.locator("summary").click()
     line.wait_for(state="hidden")
     look(1400, "hidden")
+
+
+def test_tabs_stand_in_groups_and_the_rest_in_a_list(sized: Bench) -> None:
+    page, more = sized.page, sized.page.locator(".sb-more-tabs")
+    wide = layout_for(page.viewport_size["width"], page.viewport_size["height"]).two
+    sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
+    run, switching = ["Errors", "Spectrum", "Metrics"], ["Errors", "Spectrum", "Switching", "Metrics"]
+    network = [["Network", ["Frequency", "Poles", "Step", "Diagram"]]]
+    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare", "Sweep"]]
+
+    def groups(tabs: list[str]) -> list[object]:
+        below = [["Run", tabs], decide]
+        return [network, below] if wide else [[*network, *below]]
+
+    # the tab that comes with a scenario comes into its place, and leaves it
+    sized.wait_until(lambda: page.evaluate("look.groups") == groups(switching), 10.0)
+    sized.put(load_preset("sun-step"), origin="sun-step")
+    sized.wait_until(lambda: page.evaluate("look.groups") == groups(run), 10.0)
+    assert more.locator("option").all_inner_texts() == ["More", "Misprints", "Scenario"]
+    named = "() => getComputedStyle(document.querySelector('[data-sb-group=Network]'), '::before').content"
+    if wide:
+        assert "Network" in page.evaluate(named)
+    for title in ("Misprints", "Scenario"):
+        sized.tab(title)  # from the list: as long as it is in front it stands beside the others
+        strip = page.evaluate("look.groups")[0]
+        assert strip[-1][1][-1] == title and more.input_value() == ""
+    page.evaluate("() => schuler.command('tab', 'Misprints')")
+    page.get_by_role("tab", name="Misprints", exact=True, selected=True).wait_for()
+    sized.tab("Frequency")
+    assert page.evaluate("look.groups") == groups(run)
 
 
 def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:

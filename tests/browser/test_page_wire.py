@@ -69,7 +69,7 @@ def test_a_visitor_without_our_script_gets_all_figures(dashboard: Served) -> Non
         drawn = [kind for kind in load() if kind.always and kind not in (TuneView, DesignView)]
         plotly = [kind for kind in drawn if issubclass(kind, PlotlyView)]
         assert kinds.count("GuiPlotlyMessage") == len(plotly) >= 4
-        assert kinds.count("GuiUplotMessage") == 6
+        assert kinds.count("GuiUplotMessage") == 4
 
 
 def test_figures_out_of_sight_are_not_sent_until_their_tab_comes(dashboard: Served) -> None:
@@ -88,7 +88,7 @@ def test_a_page_that_opens_has_the_pictures_in_front_before_all_else(dashboard: 
     with visit(server.port, named(dashboard, "front-comes-first")) as visitor:
         ready(visitor, "1920x1080")  # the tabs are not there yet
         kinds = [message["type"] for message in visitor.received]
-        assert (kinds.count("GuiPlotlyMessage"), kinds.count("GuiUplotMessage")) == (1, 6)
+        assert (kinds.count("GuiPlotlyMessage"), kinds.count("GuiUplotMessage")) == (1, 4)
         assert kinds.index("GuiUplotMessage") < kinds.index("MeshMessage"), "the 3D view"
 
 

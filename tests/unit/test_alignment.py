@@ -1,4 +1,4 @@
-"""Coarse and fine alignment (theory.md 6.1): residuals, steady state, noise, refusals."""
+"""Coarse and fine alignment (theory.md 6.1): residuals, steady state, noise, refusals, in a scenario."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,8 @@ from navcore.alignment.fine import (
     fine_alignment,
     steady_misalignment,
 )
-from navcore.foundation.earth import WGS84
+from navcore.engine.alignment_start import aligned_start, start_errors
+from navcore.foundation.earth import EARTH_RATE, WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
@@ -17,6 +18,7 @@ from navcore.mechanization.strapdown.run import turned_by
 from navcore.motion.static import StaticMotion
 from navcore.motion.truth import HEADING, PITCH, ROLL
 from navcore.networks.azimuth_loop import azimuth_gains
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from tests.strapdown import DENG_SWING, SITE
@@ -114,3 +116,63 @@ def test_a_loop_too_fast_for_the_imu_is_refused():
         fine_alignment(
             np.zeros((10, 6)), 1.0, np.array([1.0, 0, 0, 0]), 0.5, 0.0, WGS84, CompassLoop(sigma=1.0)
         )
+
+
+# ---------------------------------------------------------------- coarse alignment in a scenario
+
+SWING = {
+    "kind": "swing",
+    **{axis: {"amplitude_deg": 6.0, "frequency_hz": 0.1} for axis in ("roll", "heading")},
+}
+QUICK = {"kind": "compass", "duration_s": 121.0, "coarse_s": 120.0}
+"""The compass loop has a second: what the coarse alignment found is left."""
+
+
+def _started(alignment, motion=None, **blocks):
+    scenario = Scenario.parse(
+        {
+            "run": {"fidelity": "strapdown", "rate_hz": 50.0},
+            "alignment": alignment,
+            "motion": motion or {"kind": "static", "heading_deg": 75.0},
+            **blocks,
+        }
+    )
+    row = scenario.motion.truth(1, 1.0, scenario.site.site(), scenario.earth).values[0]
+    return start_errors(aligned_start(scenario, row), row)[4:7]
+
+
+@pytest.mark.parametrize("motion", [None, SWING], ids=["static", "swing"])
+def test_a_coarse_alignment_finds_the_attitude_that_nobody_told(motion):
+    """At rest the cone's share is left. Without it the compass loop starts from the true attitude."""
+    found, told = (_started(alignment, motion) for alignment in (QUICK, QUICK | {"coarse_s": 0.0}))
+    assert np.abs(found).max() < (0.02 if motion else 0.001) * DEG
+    assert not np.array_equal(found, told)
+
+
+def test_an_east_gyro_bias_turns_the_coarse_north():
+    """The compass error of 6.1, -eps_E / (Omega cos L), is the coarse part's; without it there is none."""
+    imu = {"gyro_bias_dph": [0.5, 0.0, 0.0]}
+    level = {"kind": "static"}
+    found = _started(QUICK, level, imu=imu)[2]
+    lat = 32.06 * DEG
+    wanted = -0.5 * DEG_PER_HOUR / (EARTH_RATE * np.cos(lat))
+    assert found == pytest.approx(wanted, rel=0.02)
+    without = _started(QUICK | {"coarse_s": 0.0, "level_s": 119.0, "sigma": 1e-4}, level, imu=imu)[2]
+    assert abs(without) < 0.02 * abs(wanted)
+
+
+def test_the_initial_error_is_added_to_what_the_coarse_alignment_finds():
+    error = {"attitude_arcmin": [0.0, 0.0, 60.0]}
+    assert _started(QUICK, initial_error=error)[2] == pytest.approx(1.0 * DEG, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("alignment", "why"),
+    [
+        ({"coarse_s": 10.0}, "must be 0 or >= 30"),
+        ({"kind": "compass", "duration_s": 100.0, "coarse_s": 100.0}, "must be < 100"),
+    ],
+)
+def test_a_coarse_alignment_that_is_too_short_or_too_long_is_refused(alignment, why):
+    with pytest.raises(InputError, match=f"alignment.coarse_s.*{why}"):
+        Scenario.parse({"run": {"fidelity": "strapdown"}, "alignment": alignment})

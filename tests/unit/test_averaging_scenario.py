@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from navcore.averaging import AlignmentMotion, Averaging
-from navcore.averaging.forecast import base_motion, forecast_from, still_segments
-from navcore.averaging.record import alignment_record, standing_row, standing_signals
+from navcore.averaging.forecast import Forecast, base_motion, forecast_from, still_segments
+from navcore.averaging.record import alignment_record, sensed_at_rest, standing_row, standing_signals
 from navcore.engine.simulation import simulate
-from navcore.foundation.earth import EARTH_RATE, WGS84
+from navcore.foundation.earth import EARTH_RATE, WGS84, attitude_matrix
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.static import StaticMotion
-from navcore.motion.truth import VE
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE
 from navcore.scenario.model import Scenario
-from navcore.sensors.imu import Imu
+from navcore.sensors.imu import Imu, imu_errors
 from navcore.sensors.noise import unit_noise
 from tests.averaging import SITE, made, truth_row
 
@@ -227,3 +227,63 @@ def test_a_base_that_moves_at_the_end_is_forecast_in_the_attitude_in_which_it_en
     still = record()[:590].mean(axis=0)
     before = record(motions=at_the_end)[:590].mean(axis=0)
     assert np.abs(before - still)[3:].max() > 0.05
+
+
+# ---------------------------------------------------------------- other fits, and (26) as printed
+
+
+def test_a_drift_is_forecast_by_a_line_and_not_by_a_mean():
+    drift = np.array([0.02, -0.01, 0.03]) * DEG_PER_HOUR / 3600.0
+    increments = record()
+    increments[:, :3] += drift * (np.arange(600) - 599.5)[:, None]
+    line, mean = forecast_from(increments, order=1), forecast_from(increments)
+    later = standing_signals(STANDING, WGS84)[:3] + drift * 43200.0
+    np.testing.assert_allclose(line.at(np.array([43200.0]))[0, :3], later, atol=1e-6 * DEG_PER_HOUR)
+    np.testing.assert_allclose(mean.at(np.array([43200.0]))[0, :3] - later, -drift * 43500.0, rtol=1e-3)
+
+
+def test_means_over_steps_are_those_of_the_polynomial():
+    forecast = Forecast(np.ones(3), np.ones(3), (), np.array([[1e-3] * 6, [-2e-6] * 6, [1e-9] * 6]))
+    fine = forecast.at(np.linspace(100.0, 140.0, 400_001)[:-1] + 5e-5)
+    means = forecast.means(100.0, 20.0, 2)
+    np.testing.assert_allclose(means, fine.reshape(2, 200_000, 6).mean(axis=1), rtol=1e-9)
+
+
+def test_a_line_carries_the_noise_of_600_s_to_three_degrees_an_hour():
+    """sqrt(12) N / T^1.5 of slope: 0.255 deg/h an hour for 0.005 deg/sqrt(h) (theory.md 5)."""
+    noise = Imu(gyro_arw_dpsh=0.005)
+    found = [forecast_from(record(noise, seed=seed), order=1) for seed in range(60)]
+    after = [one.at(np.array([43200.0]))[0, :3] - standing_signals(STANDING, WGS84)[:3] for one in found]
+    assert np.std(after) / DEG_PER_HOUR == pytest.approx(3.1, rel=0.15)
+    words = made(Averaging(order=1), imu=noise).notices
+    assert len(words) == 1 and "fit of order 1 moves the forecast" in words[0]
+
+
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_shifted_as_printed_only_the_last_part_counts(order):
+    increments = record(NOISY, ZHAO_FIG_4)
+    printed = forecast_from(increments, order=order, shifted=True)
+    last = forecast_from(increments[printed.segments[-1][0] :], order=order)
+    np.testing.assert_allclose(printed.factors, last.factors, rtol=1e-6, atol=1e-16)
+    turned = forecast_from(increments, order=order)
+    assert np.abs(turned.gyro - printed.gyro).max() > 1e-3 * DEG_PER_HOUR
+
+
+def test_the_method_runs_with_the_fit_that_it_is_given():
+    imu = Imu(gyro_bias_dph=(0.01, 0.0, 0.0), gyro_arw_dpsh=0.002)
+    fits = [made(Averaging(**given), imu=imu, motions=ZHAO_FIG_4).forecast for given in (
+        {}, {"order": 2}, {"segments": "shifted"}, {"order": 1, "segments": "shifted"},
+    )]  # fmt: skip
+    assert [len(fit.growth) for fit in fits] == [0, 2, 0, 1]
+    assert len({fit.gyro.tobytes() for fit in fits}) == 4
+
+
+def test_what_came_is_what_the_sensors_of_the_run_feel_at_rest():
+    """Turned to the navigation frame it is the errors that the error model's run has, number by number."""
+    imu = Imu(**NOISY.model_dump() | {"gyro_instability_dph": 0.02, "gyro_tau_s": 600.0})
+    came = sensed_at_rest(imu, STANDING, 500, 2.0, WGS84, 7) - standing_signals(STANDING, WGS84)
+    truth = TILTED.truth(1, 1.0, SITE, WGS84)
+    errors = imu_errors(imu.all_parts(), truth, 500, 2.0, WGS84, 7)
+    turn = attitude_matrix(*STANDING[[PITCH, ROLL, HEADING]])
+    np.testing.assert_allclose(came[:, :3] @ turn.T, errors.gyro, rtol=1e-6, atol=1e-13)
+    np.testing.assert_allclose(came[:, 3:] @ turn.T, errors.accel, rtol=1e-6, atol=1e-9)

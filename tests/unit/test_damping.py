@@ -119,3 +119,21 @@ def test_no_code_but_the_kinds_compares_a_kind_with_a_name() -> None:
 
 def names_in(node: ast.AST) -> set[str]:
     return {at.value for at in ast.walk(node) if isinstance(at, ast.Constant) and isinstance(at.value, str)}
+
+
+def test_the_price_of_internal_whole_damping_is_told_with_its_number() -> None:
+    """5 m/s at 45 deg give 0.1015 deg/h with unity2: 0.0287 deg/h at the equator for 1 m/s."""
+    method = {
+        "damping": "internal",
+        "network": {"id": "complementary"},
+        "azimuth": {"id": "unity2", "zeta": 0.5},
+    }
+    [notice] = [
+        text
+        for text in simulate(Scenario.parse({"run": {"duration_h": 0.1}, "method": [method]}))
+        .methods[0]
+        .warnings
+        if text.startswith("internal azimuth network")
+    ]
+    assert "Y'(0) = 12179 s: 0.0287 °/h times cos L for each m/s" in notice
+    assert 0.0287 * 5.0 * np.sqrt(0.5) == pytest.approx(0.1015, abs=2e-4)

@@ -4,19 +4,23 @@ import re
 from itertools import combinations
 from typing import Any
 
+import numpy as np
 import pytest
 
 from navcore.damping import KINDS
+from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
+from navcore.law.policy.variation import Variation
 from navcore.mechanization.recorder import DAMPED_COLUMN
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.plots import style
 from schuler_bench.views import load as load_views
 from schuler_bench.views.diagram.blocks import WIDTH, Block, Diagram, State, Switch, diagram
+from schuler_bench.views.diagram.membership import memberships as memberships_of
 from schuler_bench.views.diagram.svg import diagram_svg
-from schuler_bench.views.diagram.view import state_at
-from tools.diagrams import FOLDER, METHODS, drawn
+from schuler_bench.views.diagram.view import beneath, state_at
+from tools.diagrams import FOLDER, METHODS, drawn, memberships
 
 
 def scenario(method: dict[str, Any], **blocks: Any) -> Scenario:
@@ -40,6 +44,10 @@ def test_every_kind_of_damping_is_among_the_documented_ones() -> None:
 @pytest.mark.parametrize("name", METHODS)
 def test_the_documentation_shows_what_the_page_shows(name: str) -> None:
     assert (FOLDER / f"{name}.svg").read_text(encoding="utf-8") == drawn(name)
+
+
+def test_the_documentation_shows_the_membership_functions_of_the_page() -> None:
+    assert (FOLDER / "membership.svg").read_text(encoding="utf-8") == memberships()
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -113,3 +121,49 @@ def test_a_method_without_a_switch_draws_none() -> None:
     }
     assert {name for name, switches in kinds.items() if not switches} == {"free", "averaging", "kalman"}
     assert len(kinds["whole"]) == 2
+
+
+# ---------------------------------------------------------------- beneath the loop: figures of the papers
+
+
+def run_of(name: str, *methods: dict[str, Any], **blocks: Any) -> Run:
+    data = load(name).canonical()
+    data["run"] |= {"duration_h": 0.1, "fidelity": "error_model"}
+    return simulate(Scenario.parse({**data, **blocks, "method": list(methods) or data["method"]}))
+
+
+def test_the_membership_functions_are_those_of_liu_and_share_every_variation() -> None:
+    """Figure 8: small falls from a to b, medium peaks at b, large rises from b to c; their sum is 1."""
+    policy = Variation(a=0.1, b=0.2, c=0.5)
+    s = np.array([0.0, 0.1, 0.15, 0.2, 0.35, 0.5, 9.0])
+    found = memberships_of(policy, s)
+    np.testing.assert_allclose(found.sum(axis=0), 1.0)
+    np.testing.assert_allclose(found[0], [1, 1, 0.5, 0, 0, 0, 0])
+    np.testing.assert_allclose(found[2], [0, 0, 0, 0, 0.5, 1, 1])
+
+
+def test_the_membership_functions_stand_beneath_the_loop_of_their_policy() -> None:
+    variation = {"damping": "external", "network": {"id": "unity2"}, "policy": {"id": "variation", "b": 0.4}}
+    run = run_of("liu-switching", variation, METHODS["feedback"], motion={"kind": "static"})
+    assert "b = 0.4" in beneath(run, 0) and "do not damp" in beneath(run, 0)
+    assert beneath(run, 1) == ""
+
+
+def test_the_forecast_stands_beneath_the_loop_of_averaging() -> None:
+    """A mean is drawn as a level line over half a sidereal day, a fit of order 1 as a sloping one."""
+    averaging = {"damping": "averaging"}
+    run = run_of("zhao-turntable", averaging, {"damping": "free"}, motion={"kind": "static"})
+    svg = beneath(run, 0)
+    assert "18 s of 600 s left out" in svg and beneath(run, 1) == ""
+    lines = [points.split() for points in re.findall(r'polyline points="([^"]+)"', svg)]
+    assert len(lines) == 6 and {len(points) for points in lines} == {71}
+    assert all(len({point.split(",")[1] for point in points}) == 1 for points in lines)
+    assert "forecast less what came" in svg
+    sloping = beneath(run_of("zhao-turntable", averaging | {"averaging": {"order": 1}}), 0)
+    first = re.findall(r'polyline points="([^"]+)"', sloping)[0].split()
+    assert len({point.split(",")[1] for point in first}) > 30
+
+
+def test_a_record_without_motion_is_used_as_a_whole() -> None:
+    run = run_of("zhao-sensors", {"damping": "averaging"})
+    assert "all 600 s used" in beneath(run, 0)

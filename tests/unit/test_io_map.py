@@ -191,7 +191,7 @@ def test_a_changed_map_is_read_anew(tmp_path: Path) -> None:
 def test_a_map_of_no_table_is_refused(tmp_path: Path) -> None:
     _, text = _files(tmp_path, GERMAN, GERMAN_MAP)
     (tmp_path / "log.nmea").write_text("$HEHDT,10.0,T*2F\n" * 9)
-    with pytest.raises(InputError, match="describes a text table"):
+    with pytest.raises(InputError, match="describes a table"):
         read_recording(tmp_path / "log.nmea", read_map(text))
 
 

@@ -14,6 +14,7 @@ from schuler_bench.misprints.base import OMEGA_S, growth_time
 from schuler_bench.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
 from schuler_bench.misprints.liu import variation
 from schuler_bench.misprints.sun import least_stable
+from schuler_bench.views.misprints.view import _TITLES
 from tools.papers.misprints import window
 
 UNSTABLE = ["deng-1", "deng-3", "liu-5", "sun-16"]
@@ -103,6 +104,14 @@ def test_the_window_shows_all_of_the_corrected_form(name):
 @pytest.mark.parametrize(("name", "start", "form", "expected"), VALUES)
 def test_values_of_the_theory(name, start, form, expected):
     assert getattr(number(name, start), form) == expected
+
+
+def test_what_is_printed_rightly_is_called_no_misprint():
+    """Liu 17 to 19 are a right recursion, and figure 7 a statement: neither stands among the errors."""
+    assert {name for name, item in MISPRINTS.items() if item.remark} == {"liu-19", "liu-fig7"}
+    told = [title for title, name in _TITLES.items() if MISPRINTS[name].remark]
+    assert len(told) == 2 and all("(no misprint)" in title for title in told)
+    assert sum("(no misprint)" in title for title in _TITLES) == 2
 
 
 def test_a_comparison_is_the_same_each_time():

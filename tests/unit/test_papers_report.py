@@ -14,9 +14,11 @@ from navcore.foundation.notation import in_symbols
 from navcore.scenario.file import presets
 from tools.papers import deng, deng_errors
 from tools.papers.claim import Claim, Exhibit, Paper, Reading, about, at_least, at_most, number, order_of
-from tools.papers.markdown import Contradiction, check, exhibit_text, summary
+from tools.papers.estimate import ratio_estimate
+from tools.papers.markdown import Contradiction, check, exhibit_text, search_text, summary
 from tools.papers.measure import interval, last_above
 from tools.papers.runs import Runs, method, scenario_of
+from tools.papers.search import Search, outcome, verdict
 from tools.papers.write import papers, write_report
 
 OWN = {"sea-gyrocompass", "sea-whole", "sikuliaq-like", "sikuliaq-recorded", "sun-states"}
@@ -150,6 +152,15 @@ def test_interval_is_students():
     assert half == pytest.approx(4.302653 / np.sqrt(3.0))
 
 
+def test_the_interval_of_a_skewed_ratio_is_that_of_its_logarithm():
+    """Of 0.5, 2 and 8 the mean +- Student's interval would reach below 0."""
+    found = ratio_estimate(np.array([0.5, 2.0, 8.0]))
+    half = 4.302653 * np.log(4.0) / np.sqrt(3.0)
+    assert found.value == pytest.approx(2.0) and found.seeds == 3
+    assert found.ends == pytest.approx((2.0 * np.exp(-half), 2.0 * np.exp(half)))
+    assert found.position(0.01, 100.0) == 1 and found.position(1.0, 100.0) == 0
+
+
 def test_last_time_above_a_fraction_of_the_peak():
     t = np.arange(10.0)
     assert last_above(t, np.exp(-t), 0.02) == 3.0
@@ -194,7 +205,8 @@ def test_the_report_in_docs_is_what_the_code_writes_now(every, repo_root: Path, 
     runs = Runs()
     [exhibit] = [exhibit for paper in every for exhibit in paper.exhibits if exhibit.name == name]
     checked = [check(stated, runs) for stated in exhibit.claims]
-    assert exhibit_text(exhibit, checked, [make(runs) for make in exhibit.tables]) in text
+    tables = [make(runs) for make in exhibit.tables]
+    assert exhibit_text(exhibit, checked, tables, search_text(exhibit, runs)) in text
 
 
 def test_the_same_code_writes_the_same_files(tmp_path: Path):
@@ -215,7 +227,53 @@ def test_the_same_code_writes_the_same_files(tmp_path: Path):
 
 def test_nothing_is_written_when_a_claim_contradicts_its_reason(tmp_path: Path, every):
     [exhibit] = [exhibit for paper in every for exhibit in paper.exhibits if exhibit.name == "sun-table-1"]
-    wrong = replace(exhibit, claims=(claim(5.0),), tables=(), draw=None)
+    wrong = replace(exhibit, claims=(claim(5.0),), tables=(), search=None, draw=None)
     faults = write_report([replace(every[0], exhibits=(wrong,))], tmp_path)
     assert len(faults) == 1 and "x is two" in faults[0]
     assert not (tmp_path / "papers.md").exists()
+
+
+# ---------------------------------------------------------------- searches
+
+
+def searched(*rows: tuple[float, ...]) -> str:
+    """Verdict of a search for numbers within 1 to 2, a row a setting."""
+    found = {f"setting {k}": row for k, row in enumerate(rows, 1)}
+    numbers = tuple(range(1, len(rows[0]) + 1))
+    search = Search("Made up.", numbers, lambda runs: found)
+    return verdict(outcome(search, [(1.0, 2.0)] * len(numbers), Runs()))
+
+
+def test_a_setting_that_meets_all_claims_is_named():
+    assert searched((0.0, 1.0), (1.5, 1.5), (2.0, 1.0)) == (
+        "Possible with setting 2 (2 of 3 settings tried): claims 1 and 2 are met."
+    )
+
+
+def test_claims_that_exclude_each_other_are_named_and_which_of_them_stands_alone():
+    told = searched((1.5, 1.5, 0.0), (0.0, 0.0, 1.5), (1.5, 0.0, 0.0))
+    assert "No setting of 3 tried meets claims 1 and 3, nor 2 and 3 together." in told
+    assert "Claim 3 stands alone against the others, which are met by setting 1 (1 of 3" in told
+
+
+def test_a_claim_that_no_setting_meets_stands_alone():
+    told = searched((1.5, 3.0), (0.0, 5.0), (float("nan"), float("nan")))
+    assert told == (
+        "No setting of 3 tried meets claim 2 (ours from 3.00 to 5.00). It stands alone: claim 1 is met by "
+        "setting 1 (1 of 3 settings tried)."
+    )
+
+
+def test_where_none_stands_alone_the_most_is_told():
+    told = searched((1.5, 0.0, 0.0), (0.0, 1.5, 0.0), (0.0, 0.0, 1.5))
+    assert "meets claims 1 and 2, nor 1 and 3, nor 2 and 3 together" in told
+    assert told.endswith("At most claim 1 is met by one setting: setting 1.")
+
+
+def test_every_exhibit_of_a_paper_with_a_claim_that_differs_was_searched(every):
+    """Our own claims say nothing about a paper."""
+    for exhibit in (exhibit for paper in every for exhibit in paper.exhibits):
+        differs = [stated for stated in exhibit.claims if stated.why and stated.kind != "own"]
+        assert not differs or exhibit.search is not None, exhibit.name
+        if exhibit.search is not None:
+            assert set(exhibit.search.claims) <= set(range(1, len(exhibit.claims) + 1))

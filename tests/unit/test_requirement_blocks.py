@@ -97,6 +97,22 @@ def test_blocks_are_part_of_the_file() -> None:
             "requirement.0.from_h = -1.0: must be >= 0",
         ),
         ({"quantity": "tilt_max_arcsec"}, "requirement.0.at_most"),
+        (
+            {"quantity": "tilt_max_arcsec", "at_most": "20 deg"},
+            "requirement.0.at_most = '20 deg': must be a number in arcsec, without the unit",
+        ),
+        (
+            {"quantity": "settling_s", "at_most": "90 min"},
+            "requirement.0.at_most = '90 min': must be a number in s, without the unit",
+        ),
+        (
+            {"quantity": "tilt_max_arcsec", "at_least": 30.0},
+            "requirement.0.at_least = 30.0: is not for tilt_max_arcsec: give at_most",
+        ),
+        (
+            {"quantity": "damping_ratio", "at_most": 0.5, "at_least": 0.3},
+            "requirement.0.at_most = 0.5: is not for damping_ratio: give at_least",
+        ),
     ],
 )
 def test_bad_blocks_are_refused(block: dict[str, object], words: str) -> None:

@@ -1,6 +1,7 @@
 """Requirements: measured, against hand computations; bad input; who meets them; over a part of the run."""
 
 import math
+import re
 import threading
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -212,46 +213,65 @@ def test_what_is_not_offered_is_refused(wrong: dict[str, object]) -> None:
 # ------------------------------------------------------------ the boxes
 
 
-class Box:
-    """A text box of viser: its value, and what is called when the browser has sent one."""
-
-    def __init__(self, value: str) -> None:
-        self.value = value
-
-    def on_update(self, act: Callable[[Any], None]) -> None:
-        self.call = act
-
-
-def test_a_limit_that_is_being_typed_is_not_overwritten() -> None:
-    """viser stores a typed value before it calls back; other work may bring the boxes up to date between."""
-    boxes: dict[str, Box] = {}
-
-    def add_text(label: str, value: str, hint: str) -> Box:
-        assert hint
-        return boxes.setdefault(label, Box(value))
-
+def test_what_is_typed_into_the_table_is_a_limit_or_refused() -> None:
     begun = static_run().scenario
-    session: Any = SimpleNamespace(lock=threading.RLock(), scenario=begun, run=None)
+    commands: dict[str, Callable[[str], None]] = {}
+    session: Any = SimpleNamespace(lock=threading.RLock(), scenario=begun, run=None, redrawn=0)
     session.searches = SimpleNamespace(judge=SimpleNamespace(known={}, words=()))
 
     def change(scenario: Scenario, by: object, name: str = "") -> None:
         session.scenario = scenario
-        view.follow_scenario()
+
+    def redraw() -> None:
+        session.redrawn += 1
 
     session.change = change
-    gui = SimpleNamespace(add_text=add_text, add_html=lambda text: SimpleNamespace(content=text))
-    frame: Any = SimpleNamespace(gui=gui, session=session)
-    view = RequirementsView(frame)
-    view.build(nullcontext())
-    settling, overshoot = (boxes[label_of(key)] for key in ("settling_s", "tilt_overshoot"))
-    settling.value = "90"  # typed, and not called back yet
-    both = with_limit(with_limit(begun, "settling_s", "30"), "tilt_overshoot", "20")
-    change(both, None)  # by another page
-    assert (settling.value, overshoot.value) == ("90", "20")
-    settling.call(SimpleNamespace(client=object()))
-    assert session.scenario == with_limit(both, "settling_s", "90")
-    change(begun, None)
-    assert (settling.value, overshoot.value) == ("", "")
+    notes: list[Any] = []
+    gui = SimpleNamespace(add_html=lambda text: notes.append(SimpleNamespace(content=text)) or notes[-1])
+    register = SimpleNamespace(register=lambda name, act: commands.update({name: act}))
+    frame: Any = SimpleNamespace(gui=gui, session=session, commands=register, redraw=redraw)
+    RequirementsView(frame).build(nullcontext())
+    typed = commands["limit"]
+    for key, text in (
+        ("settling_s", "90"),
+        ("tilt_overshoot", "20"),
+        ("position_rms_m", "5"),
+        ("from", "1.5"),
+    ):
+        typed(f"{key} {text}")
+    wanted = with_limit(with_limit(begun, "settling_s", "90"), "tilt_overshoot", "20")
+    wanted = with_begin(with_limit(wanted, "position_rms_m", "5"), "1.5")
+    assert session.scenario == wanted and notes[0].content == ""
+    for text, told in (("settling_s soon", "90 is kept"), ("from -1", "1.5 is kept")):
+        typed(text)
+        assert told in notes[0].content and session.scenario == wanted
+    typed("nonsense 3")
+    assert (session.scenario, session.redrawn) == (wanted, 2)
+    typed("settling_s ")
+    assert notes[0].content == "" and [one.quantity for one in session.scenario.requirement] == [
+        "tilt_overshoot", "position_rms_m",
+    ]  # fmt: skip
+
+
+def test_a_box_is_made_anew_by_its_own_limit_alone_and_stays_in_its_row() -> None:
+    """What is being typed into another box stays as it is: the page exchanges what differs (fill.js)."""
+
+    def boxes(run: Run, **refused: int) -> dict[str, str]:
+        html = requirements_html(run, boxes=refused)
+        return {
+            found[1]: found[0] for found in re.finditer('<input[^>]*data-limit="([a-z0-9_]+)"[^>]*>', html)
+        }
+
+    run = run_of()
+    before, after = boxes(run), boxes(under(run, tilt_overshoot=20.0))
+    assert list(before) == list(after) == [*BOXES, "from"]
+    assert {key for key in before if before[key] != after[key]} == {"tilt_overshoot"}
+    again = boxes(run, settling_s=1)
+    assert {key for key in before if before[key] != again[key]} == {"settling_s"}
+    # rows without a limit are folded away, where there is one
+    html = requirements_html(under(run, tilt_overshoot=20.0), boxes={})
+    assert html.count('class="sb-unasked"') == len(BOXES) and "sb-nothing" not in html
+    assert "sb-nothing" in requirements_html(run, boxes={})
 
 
 # ------------------------------------------------------------ a part of the run

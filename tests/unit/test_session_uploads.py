@@ -1,5 +1,6 @@
 """Uploaded files: kept under safe names, checked, bounded, and turned into runs."""
 
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -8,16 +9,18 @@ import pytest
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import load, to_toml
 from navcore.scenario.model import Scenario
+from navcore.sensors.recorded import log_recording
 from schuler_bench.session import uploads
 from schuler_bench.session.content import Contents
+from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.uploads import (
     Uploads,
     opened_scenario,
     plain_names,
-    recorded_scenario,
     shared_files,
     with_plain_names,
 )
+from schuler_bench.views.files.meanings import asks_for_the_order, with_choice, with_meaning
 
 
 def without_last_column(text: str) -> str:
@@ -175,3 +178,60 @@ def test_a_wrong_scenario_file_is_refused_by_name(files: Uploads, content: bytes
 def test_recordings_that_come_with_the_program_need_no_upload() -> None:
     preset = load("sikuliaq-recorded").canonical()
     assert shared_files(Scenario.parse(plain_names(preset)), {}).canonical() == preset
+
+
+UNNAMED = "wann;fahrt;kurs\n" + "".join(
+    f"01/05/2024 12:{t // 60:02d}:{t % 60:02d};5,0;90\n" for t in range(120)
+)
+
+
+def mapped(upload: uploads.Upload) -> dict[str, Any]:
+    """What a user chooses for `UNNAMED` in the page."""
+    data = with_meaning(upload.map, "wann", "time")
+    data = with_choice(data, "wann", "unit", "%d/%m/%Y %H:%M:%S")
+    data = with_meaning(data, "fahrt", "speed")
+    return with_choice(data, "fahrt", "unit", "mps")
+
+
+def test_a_table_with_unknown_columns_is_kept_until_they_are_named(
+    files: Uploads, scenario: Scenario
+) -> None:
+    upload = files.add("log.csv", UNNAMED.encode())
+    assert upload.faults and not upload.quantities and upload.table is not None
+    assert "wann" in str(upload.faults[0]) and str(files.folder) not in str(upload.faults)
+    assert asks_for_the_order(with_meaning(upload.map, "wann", "time"), upload.table) == "wann"
+    read = files.use_map("log.csv", mapped(upload))
+    assert (read.quantities, read.faults) == ({"water"}, ())
+    made, _ = recorded_scenario(scenario, files)
+    log = log_recording(made.reference).water
+    assert log is not None and log.values[0, 1] == 5.0
+    assert log.time_s[0] == datetime(2024, 5, 1, 12, tzinfo=UTC).timestamp()
+
+
+def test_a_map_is_saved_beside_the_data_and_used_again(files: Uploads) -> None:
+    files.use_map("log.csv", mapped(files.add("log.csv", UNNAMED.encode())))
+    assert sorted(in_folder(files)) == ["log.csv", "log.csv.map.toml"]
+    assert files.add("log.csv", UNNAMED.replace("5,0", "6,0").encode()).quantities == {"water"}
+    again = Uploads(files.folder)
+    again.reopen()
+    assert list(again.files) == ["log.csv"] and again.files["log.csv"].mapped
+    assert again.use_map("log.csv", None).faults and list(in_folder(files)) == ["log.csv"]
+
+
+def test_a_wrong_map_changes_nothing_and_names_the_column(files: Uploads) -> None:
+    upload = files.add("log.csv", UNNAMED.encode())
+    wrong = mapped(upload) | {"time": {"column": "when", "unit": "iso"}}
+    with pytest.raises(InputError, match="when.*is no column of the file"):
+        files.use_map("log.csv", wrong)
+    with pytest.raises(InputError, match="quantity"):
+        files.use_map("log.csv", with_meaning(upload.map, "wann", "time"))
+    assert files.files["log.csv"] is upload and list(in_folder(files)) == ["log.csv"]
+
+
+def test_a_column_of_an_imu_is_turned_by_its_sign(files: Uploads) -> None:
+    upload = files.add("imu.csv", IMU.encode())
+    assert upload.details["up_axis"] == "-z"
+    data = upload.map
+    for name in ("gy_rad_s", "gz_rad_s", "fy_mps2", "fz_mps2"):
+        data = with_choice(data, name, "sign", -1)
+    assert files.use_map("imu.csv", data).details["up_axis"] == "+z"

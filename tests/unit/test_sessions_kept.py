@@ -13,10 +13,10 @@ from navcore.scenario.file import load
 from schuler_bench.editing import edits
 from schuler_bench.http.ids import SessionIds, is_shared
 from schuler_bench.session.database import Database
+from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.session import Session
 from schuler_bench.session.sessions import Sessions
 from schuler_bench.session.store import open_store
-from schuler_bench.session.uploads import recorded_scenario
 
 ID, PRESET = "visitor-of-the-tests-000", load("zha-fast")
 XI = ("method", 2, "network", "xi")

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tools.papers.estimate import Estimate
+from tools.papers.estimate import Estimate, number
 from tools.papers.runs import Runs
+from tools.papers.search import Search, Span
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_SMALLEST = 1e-6
-"""Size below which a difference is rounding in most places, and not the same on every processor."""
 
 Verdict = Literal["agrees", "differs", "undecided"]
 """Agrees: our number, or its whole confidence interval, lies in the range. Differs: none of it does.
@@ -26,7 +24,6 @@ Kind = Literal["predicted", "fitted", "direction only", "own"]
 Direction only: the paper states a relation, or its setting is too incomplete for more than one.
 Own: the claim is ours."""
 KINDS: tuple[Kind, ...] = ("predicted", "fitted", "direction only", "own")
-Span = tuple[float, float]
 
 
 def about(value: float, tolerance: float) -> Span:
@@ -64,12 +61,15 @@ class Reading:
         Range of our number within which the two agree.
     ours : callable
         Our number in this reading, as `Claim.ours`.
+    strapdown : bool
+        Whether it is computed in the full strapdown where the claim is.
     """
 
     name: str
     printed: str
     agreed: Span
     ours: Callable[[Runs], float | np.ndarray | Estimate]
+    strapdown: bool = True
 
 
 @dataclass(frozen=True)
@@ -163,6 +163,8 @@ class Exhibit:
         The paper's statements.
     tables : tuple of callable
         Tables to print below.
+    search : Search, optional
+        Over the settings that the paper does not print; every exhibit with a claim that differs has one.
     draw : callable, optional
         Draws the picture on a matplotlib figure.
     height : float
@@ -175,6 +177,7 @@ class Exhibit:
     setting: str
     claims: tuple[Claim, ...] = ()
     tables: tuple[Callable[[Runs], Table], ...] = ()
+    search: Search | None = None
     draw: Callable[[Runs, Figure], None] | None = field(default=None, repr=False)
     height: float = 3.2
 
@@ -186,24 +189,3 @@ class Paper:
     name: str
     reference: str
     exhibits: tuple[Exhibit, ...]
-
-
-def number(value: float, digits: int = 3) -> str:
-    """Text of a number with a fixed count of significant digits; no exponent within 1e-4 .. 1e6.
-
-    With 0 digits it is a count: rounded to a whole number.
-    """
-    if not math.isfinite(value):
-        return "-" if math.isnan(value) else "infinite"
-    if digits == 0:
-        return f"{value:.0f}"
-    if 0.0 < abs(value) < _SMALLEST:
-        return "< 1e-6"
-    text = f"{value:.{digits - 1}e}"
-    mantissa, exponent = text.split("e")
-    power = int(exponent)
-    if float(mantissa) == 0.0:
-        return "0"
-    if -4 <= power < 6:
-        return f"{float(text):.{max(digits - 1 - power, 0)}f}"
-    return f"{mantissa}e{power}"

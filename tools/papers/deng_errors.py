@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from navcore.engine.run import MethodRun, Run
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N
 from navcore.mechanization.strapdown.records import NAVIGATION
@@ -38,7 +39,11 @@ SEEDS = range(1, 9)
 def errors(runs: Runs, preset: str, name: str, seed: int = 1, *overrides: str) -> np.ndarray:
     """Errors in the order and the units of the tables at the output rows, shape (m, 8)."""
     run = runs(preset, f"run.seed={seed}", *overrides)
-    found = method(run, name)
+    return errors_of(run, method(run, name))
+
+
+def errors_of(run: Run, found: MethodRun) -> np.ndarray:
+    """Errors of a method of a run in the order and the units of the tables, shape (m, 8)."""
     rows = found.rows
     upward = np.zeros(len(rows))
     if found.navigation is not None:

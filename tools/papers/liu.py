@@ -20,6 +20,7 @@ from tools.papers.liu_window import WINDOW
 from tools.papers.measure import departure, hours
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs
+from tools.papers.search_liu import GAINS_SEARCH
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -151,6 +152,7 @@ GAINS = Exhibit(
         ),
     ),
     tables=(_gain_table,),
+    search=GAINS_SEARCH,
     draw=_draw_networks,
 )
 

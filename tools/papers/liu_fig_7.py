@@ -18,6 +18,7 @@ from tools.papers.liu_switching import (
 )
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs
+from tools.papers.search_liu import FIG_7_SEARCH
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,5 +87,6 @@ FIGURE_7 = Exhibit(
         ),
     ),
     tables=(_fig_7_table,),
+    search=FIG_7_SEARCH,
     draw=_draw_fig_7,
 )

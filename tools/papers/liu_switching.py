@@ -19,6 +19,8 @@ Quantity = Literal["position", "velocity", "tilt"]
 QUANTITIES: tuple[Quantity, ...] = ("position", "velocity", "tilt")
 UNITS = {"position": "m", "velocity": "m/s", "tilt": "arcsec"}
 SEEDS, STRAPDOWN_SEEDS = range(1, 21), range(1, 4)
+WINDOWS_H = ((4, 8), (11, 15), (1, 4), (9, 11), (18, 24), (0, 6), (22, 25), (28, 32))
+"""Hours over which the paper's tables 1 to 3 give their RMS, in its order."""
 METHODS = (
     "free",
     "constant",
@@ -68,20 +70,20 @@ def turns(scenario: Scenario) -> list[float]:
 def sea(seed: int) -> Scenario:
     """The preset with other episodes and noise."""
     base = _base([f"run.seed={seed}", "run.output_step_s=60"])
-    return _with_events(base, lasting(seed, turns(base)))
+    return with_events(base, lasting(seed, turns(base)))
 
 
 def log_only(seed: int) -> Scenario:
     """The same episodes and noise of the log, perfect sensors, no standing error of the log."""
     overrides = [f"run.seed={seed}", "run.output_step_s=60", "reference.bias_mps=[0,0]"]
     base = _base(overrides, imu={}, initial_error={})
-    return _with_events(base, lasting(seed, turns(base)))
+    return with_events(base, lasting(seed, turns(base)))
 
 
 def episodes_at_sea(seed: int) -> Scenario:
     """+1 m/s east for 300 s every 30 min with the preset's sensors, standing error and noise."""
     base = _base([f"run.seed={seed}", "run.output_step_s=60"])
-    return _with_events(base, _passing(36.0))
+    return with_events(base, _passing(36.0))
 
 
 def episodes(seed: int, noise_mps: float = 0.1, days: float = 1.5, standing_mps: float = 0.0) -> Scenario:
@@ -95,7 +97,7 @@ def episodes(seed: int, noise_mps: float = 0.1, days: float = 1.5, standing_mps:
         f"reference.noise_mps={noise_mps}",
         "motion.kind=static",
     ]
-    return _with_events(_base(overrides, imu={}, initial_error={}), _passing(24.0 * days))
+    return with_events(_base(overrides, imu={}, initial_error={}), _passing(24.0 * days))
 
 
 def _passing(hours: float) -> Events:
@@ -119,10 +121,10 @@ def without_standing(scenario: Scenario) -> Scenario:
 
 def without_changes(scenario: Scenario) -> Scenario:
     """The same without any change of the log's error."""
-    return _with_events(scenario, [])
+    return with_events(scenario, [])
 
 
-def _with_events(scenario: Scenario, events: Events) -> Scenario:
+def with_events(scenario: Scenario, events: Events) -> Scenario:
     """Replace the log's events; there may be more of them than a file may hold."""
     made = tuple(LogEvent(**event) for event in events)
     return scenario.model_copy(update={"reference": scenario.reference.model_copy(update={"event": made})})
@@ -154,20 +156,41 @@ def errors(run: Run) -> np.ndarray:
     )
 
 
-def study(runs: Runs, case: str) -> np.ndarray:
-    """Errors of a case over the seeds, shape (seeds, methods, 3)."""
+def windowed(run: Run) -> np.ndarray:
+    """RMS of position of each method over each of `WINDOWS_H`, m, shape (methods, windows)."""
+    return np.array(
+        [
+            [rms(m.rows[(m.t_s >= a * HOUR) & (m.t_s <= b * HOUR), POSITION]) for a, b in WINDOWS_H]
+            for m in run.methods
+        ]
+    )
+
+
+def _studied(runs: Runs, case: str) -> tuple[np.ndarray, np.ndarray]:
+    """Errors of a case over the run and over the paper's windows, for each of the seeds."""
     seeds = STRAPDOWN_SEEDS if runs.strapdown else SEEDS
 
-    def make() -> np.ndarray:
-        found = []
+    def make() -> tuple[np.ndarray, np.ndarray]:
+        found, parts = [], []
         for seed in seeds:
             scenario = CASES[case](seed)
-            if runs.strapdown:
-                scenario = in_strapdown(scenario)
-            found.append(errors(simulate(scenario)))
-        return np.array(found)
+            run = simulate(in_strapdown(scenario) if runs.strapdown else scenario)
+            found.append(errors(run))
+            parts.append(windowed(run))
+        return np.array(found), np.array(parts)
 
     return runs.keep(("liu-switching", case, runs.strapdown), make)
+
+
+def study(runs: Runs, case: str) -> np.ndarray:
+    """Errors of a case over the seeds, shape (seeds, methods, 3)."""
+    return _studied(runs, case)[0]
+
+
+def window_ratios(runs: Runs, case: str, ours: str, than: str) -> np.ndarray:
+    """One method's position RMS over another's in each of `WINDOWS_H`, shape (seeds, windows)."""
+    parts = _studied(runs, case)[1]
+    return parts[:, METHODS.index(ours)] / parts[:, METHODS.index(than)]
 
 
 def in_strapdown(scenario: Scenario) -> Scenario:

@@ -8,6 +8,7 @@ from navcore.foundation.notation import in_symbols
 from tools.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
 from tools.papers.estimate import Estimate, estimate
 from tools.papers.runs import Runs
+from tools.papers.search import outcome, verdict
 
 HEAD = """\
 # What the papers claim, and what we find
@@ -19,15 +20,20 @@ preset; *strapdown* is the full nonlinear mechanization on the same setting, whe
 digits are fixed: the same code writes the same file.
 
 Where noise decides, our number is the mean over the stated number of seeds with its 95 % confidence interval
-(Student; an RMS over seeds has the interval of the mean of the squares, to first order), and the verdict goes
-by the interval: *agrees* when all of it lies in the range, *differs* when none of it does, *undecided* when
-it reaches across an end of the range. Where both fidelities are given, both must agree; if one of them
-differs, the verdict is *differs*. A number without an interval is of one run.
+(Student; an RMS over seeds has the interval of the mean of the squares, to first order; a skewed ratio is a
+geometric mean with the interval of its logarithm), and the verdict goes by the interval: *agrees* when all of
+it lies in the range, *differs* when none of it does, *undecided* when it reaches across an end of the range.
+Where both fidelities are given, both must agree; if one of them differs, the verdict is *differs*. A number
+without an interval is of one run.
 
 The kind of a claim says what its agreement is worth. *Predicted*: our number follows from the settings that
 the paper prints. *Fitted*: a setting that the paper does not print was chosen so that the number comes out.
 *Direction only*: the paper states a relation without a number, or prints too little of its setting for more.
 *Own*: the claim is ours, about what this project adds; it says nothing about a paper.
+
+Where a claim of a figure or table differs, the settings that the paper does not print were searched within
+the stated ranges for one that meets all its claims; *Search* says which one does, or which claims no setting
+meets together. The settings are judged by their means over the stated seeds, linear unless said otherwise.
 
 A claim is one row. Where a statement can be read in more than one way, every reading stands in its row;
 the verdict and the counts go by the first one, which fits the whole table or figure, for the reason given
@@ -66,7 +72,13 @@ def check(claim: Claim, runs: Runs) -> Checked:
         raise Contradiction(f"{claim.says}: {ours} {found.verdict} with {claim.agreed}, why = {claim.why!r}")
     facts = {name: _fact(fact(runs)) for name, fact in claim.facts.items()}
     others = (
-        replace(claim, printed=other.printed, agreed=other.agreed, ours=other.ours)
+        replace(
+            claim,
+            printed=other.printed,
+            agreed=other.agreed,
+            ours=other.ours,
+            strapdown=claim.strapdown and other.strapdown,
+        )
         for other in claim.readings
     )
     return replace(
@@ -129,8 +141,10 @@ def _counts(found: Sequence[Checked]) -> tuple[str, ...]:
     return (*texts, *(str(count) for count in others))
 
 
-def exhibit_text(exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[Table]) -> str:
-    """Section of one figure or table."""
+def exhibit_text(
+    exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[Table], searched: str = ""
+) -> str:
+    """Section of one figure or table; ``searched``: what `search_text` says."""
     parts = [
         f'<a id="{exhibit.name}"></a>\n\n### {exhibit.title}\n',
         f"Preset: {_presets(exhibit)}. {exhibit.setting}\n",
@@ -138,10 +152,20 @@ def exhibit_text(exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[
     if checked:
         parts.append(table_text(_claims(checked)))
         parts.append(_notes(checked))
+    parts.append(searched)
     parts.extend(table_text(table) for table in tables)
     if exhibit.draw is not None:
         parts.append(f"![{exhibit.title}](papers/{exhibit.name}.svg)\n")
     return in_symbols("\n".join(part for part in parts if part))
+
+
+def search_text(exhibit: Exhibit, runs: Runs) -> str:
+    """What is varied in an exhibit's search, and its verdict; empty without a search."""
+    search = exhibit.search
+    if search is None:
+        return ""
+    found = outcome(search, [exhibit.claims[number - 1].agreed for number in search.claims], runs)
+    return f"**Search:** {search.varied} {verdict(found)}\n"
 
 
 def table_text(table: Table) -> str:
@@ -188,6 +212,9 @@ def _cells(c: Checked, both: bool) -> list[str]:
 
 def _value(claim: Claim, found: Estimate) -> str:
     text = number(found.value, claim.digits)
+    if found.ends is not None:
+        low, high = (number(end, 2) for end in found.ends)
+        return f"{text} {claim.unit}".strip() + f" ({low} to {high}, {found.seeds} seeds)"
     if found.seeds > 1:
         text += f" +- {number(found.half, 2)}"
     text = f"{text} {claim.unit}".strip()

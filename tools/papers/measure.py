@@ -19,8 +19,13 @@ def hours(run: MethodRun) -> np.ndarray:
 
 def attitude_error(run: Run, method: MethodRun) -> np.ndarray:
     """Errors of pitch, roll, heading (computed minus true, rad) at the output rows, shape (m, 3)."""
-    phi_e, phi_n, phi_u = (method.rows[:, column] for column in (PHI_E, PHI_N, PHI_U))
-    truth = run.truth[: len(method.t_s)]
+    phi = method.rows[:, [PHI_E, PHI_N, PHI_U]]
+    return as_attitude(phi, run.truth[: len(method.t_s)])
+
+
+def as_attitude(phi: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """Errors of pitch, roll, heading (rad) of a misalignment E, N, U and rows of truth, shape (m, 3)."""
+    phi_e, phi_n, phi_u = phi.T
     sine, cosine = np.sin(truth[:, HEADING]), np.cos(truth[:, HEADING])
     along, across = phi_e * sine + phi_n * cosine, phi_e * cosine - phi_n * sine
     pitch = truth[:, PITCH]

@@ -26,17 +26,28 @@ def _number(value: float | None) -> str:
     return "none" if value is None else number(value)
 
 
-def _table(runs: Runs) -> Table:
+def _table(runs: Runs, remarks: bool = False) -> Table:
     rows = []
     for item in MISPRINTS.values():
+        if item.remark != remarks:
+            continue
         for i, shown in enumerate(comparison(runs, item).numbers):
             where = f"{item.paper}, {item.where}" if i == 0 else ""
             texts = (item.printed, item.right) if i == 0 else ("", "")
             name = f"{shown.name}, {shown.unit}" if shown.unit else shown.name
             rows.append((where, *texts, name, _number(shown.printed), _number(shown.corrected)))
     rows = [tuple(text.replace("|", "\\|") for text in row) for row in rows]
+    if remarks:
+        caption = "No misprints: printed rightly, or a statement of a figure, with what it costs:"
+        return Table(
+            caption, ("where", "printed", "in its place", "number", "as printed", "other"), tuple(rows)
+        )
     head = ("where", "printed", "right", "number", "as printed", "corrected")
     return Table("", head, tuple(rows))
+
+
+def _remarks(runs: Runs) -> Table:
+    return _table(runs, remarks=True)
 
 
 def window(both: Comparison) -> tuple[float, float] | None:
@@ -83,7 +94,7 @@ PAPER = Paper(
             title="As printed and corrected",
             presets=(),
             setting="Dashed: as printed.",
-            tables=(_table,),
+            tables=(_table, _remarks),
             draw=_draw,
             height=2.3 * -(-len(MISPRINTS) // 2),
         ),

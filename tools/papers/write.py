@@ -7,7 +7,16 @@ from pathlib import Path
 
 from tools.papers.claim import Exhibit, Paper
 from tools.papers.items import items_text
-from tools.papers.markdown import HEAD, Checked, Contradiction, check, exhibit_text, summary, table_text
+from tools.papers.markdown import (
+    HEAD,
+    Checked,
+    Contradiction,
+    check,
+    exhibit_text,
+    search_text,
+    summary,
+    table_text,
+)
 from tools.papers.picture import save
 from tools.papers.runs import Runs
 
@@ -50,7 +59,8 @@ def write_report(found: Sequence[Paper], out: Path, only: str = "") -> list[str]
             print(exhibit.name, file=sys.stderr, flush=True)
             checked = _checked(exhibit, runs, faults)
             rows.append((paper, exhibit, checked))
-            texts.append(exhibit_text(exhibit, checked, [make(runs) for make in exhibit.tables]))
+            tables = [make(runs) for make in exhibit.tables]
+            texts.append(exhibit_text(exhibit, checked, tables, search_text(exhibit, runs)))
             if exhibit.draw is not None:
                 save(pictures / f"{exhibit.name}.svg", exhibit.height, partial(exhibit.draw, runs))
     text = "\n".join([HEAD, table_text(summary(rows)), *texts, *([] if only else [items_text()])])

@@ -18,6 +18,7 @@ from tools.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, nu
 from tools.papers.measure import hours, last_above
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs, method
+from tools.papers.search_zha import SETTLING_SEARCH
 from tools.papers.zha_drive import DRIVE
 from tools.papers.zha_roll import EXTERNAL, INTERNAL, LAB, LABORATORY, PRINTED, PRINTED_K2, reduction
 
@@ -189,6 +190,7 @@ FAST = Exhibit(
         ),
     ),
     tables=(_settling_table,),
+    search=SETTLING_SEARCH,
     draw=_draw_fast,
 )
 

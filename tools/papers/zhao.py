@@ -9,6 +9,7 @@ import numpy as np
 
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, NAMES, PHI_E, PHI_N, PHI_U
 from tools.papers.claim import Claim, Exhibit, Paper, Reading, Table, about, at_most, number
+from tools.papers.estimate import Estimate, ratio_estimate
 from tools.papers.measure import hours, mean_and_interval
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs, method
@@ -74,8 +75,8 @@ def _suppressed(preset: str, strapdown: bool) -> tuple[Claim, Claim]:
     )
 
     def claim(line: int) -> Claim:
-        def ours(reading: str) -> Callable[[Runs], np.ndarray]:
-            return lambda runs: left(runs, preset, line, READINGS[preset][reading])
+        def ours(reading: str) -> Callable[[Runs], Estimate]:
+            return lambda runs: ratio_estimate(left(runs, preset, line, READINGS[preset][reading]))
 
         other = Reading(
             f"random walks {PER_ROOT}", "suppressed effectively", at_most(EFFECTIVE), ours(PER_ROOT)

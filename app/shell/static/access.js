@@ -58,7 +58,7 @@
   function plots() {
     for (const plot of document.querySelectorAll(".js-plotly-plot")) {
       const titles = (plot._fullLayout?.annotations ?? []).map((a) => a.text).filter((text) => text?.startsWith("<b>"));
-      const names = [...new Set((plot._fullData ?? []).filter((t) => t.showlegend !== false).map((t) => t.name))];
+      const names = [...new Set((plot._fullData ?? []).map((t) => t.name))].filter((name) => !/^trace \d+$/.test(name));
       const words = [titles.join(", ").replace(/<[^>]*>/g, ""), names.filter(Boolean).join(", ")].filter(Boolean);
       if (words.length === 0) continue; // nothing is drawn in it yet
       set(plot, "role", "figure");

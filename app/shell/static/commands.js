@@ -208,7 +208,7 @@
   // ------------------------------------------------------------ buttons in HTML of ours
 
   // The HTML is replaced when what it says changes: the focus goes to the new button of the same command.
-  const KEEPS = [".sb-row", ".sb-legend", ".sb-pins"];
+  const KEEPS = [".sb-row", ".sb-legend", ".sb-pins", ".sb-chips"];
   let focused = "";
   addEventListener("focusin", (event) => {
     const inside = event.target instanceof Element && KEEPS.some((where) => event.target.closest(where)) &&

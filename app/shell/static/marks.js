@@ -4,8 +4,8 @@
 (() => {
   const KINDS = { slider: "Slider", number: "NumberInput", select: "Select", text: "TextInput" };
   const HIDDEN = ["page state", "page command", "page painted"];
-  const CONTAINERS = ["tools", "limits", "compare"];
-  const WIDE = ".sb-pins, .sb-no-pins, .sb-wide, .sb-look, .mantine-Progress-root";
+  const CONTAINERS = ["topbar", "tools", "compare"];
+  const WIDE = ".sb-pins, .sb-no-pins, .sb-wide, .sb-look, .sb-legend, .mantine-Progress-root";
 
   // The child of ``container`` in which ``inner`` stands.
   function childWith(container, inner) {
@@ -45,6 +45,10 @@
       }
     }
     for (const paper of document.getElementsByClassName("plotly-container")) kinds.set(paper, "paper");
+    // The top bar: the frame that viser draws around it, and its parts.
+    const bar = document.querySelector(".sb-topbar")?.closest(".mantine-Paper-root");
+    if (bar) kinds.set(bar, "bar");
+    for (const part of document.querySelectorAll("[data-sb-part]")) kinds.set(part.parentElement, part.dataset.sbPart);
     return [
       ["data-sb-kind", kinds, (kind) => kind],
       ["data-sb-holds", holds, (words) => [...words].join(" ")],
@@ -65,7 +69,7 @@
   const drawn = (node) =>
     node instanceof SVGElement || (node instanceof Element && node.closest(".js-plotly-plot, .uplot") !== null);
   // A text that has changed changes no layout: a slider step replaces some ten of them.
-  const OURS = ["two", ...CONTAINERS].map((name) => `.sb-${name}`).join(", ");
+  const OURS = ["two", ...CONTAINERS].map((name) => `.sb-${name}`).join(", ").concat(", [data-sb-part]");
   const LAID_OUT = `[class*="mantine-"], label, .uplot-container, .js-plotly-plot, ${OURS}, ${WIDE}`;
   const laidOut = (node) => node instanceof Element && (node.matches(LAID_OUT) || node.querySelector(LAID_OUT) !== null);
   new MutationObserver((changes) => {

@@ -1,7 +1,8 @@
 // Tells the server what viser does not: the size of the window and which tabs are in front. It is written into the
 // control labelled "page state", which the page's style hides; the server reads it as "1920x1080|Frequency|Errors", or as
 // "480x320 alone|..." where one view fills the window (alone.js), "1180x820 touch|..." where a finger is the pointer,
-// "1920x1080 1.14|..." where a text is wider than in Arial, for which the server counts letters. A plot
+// "1920x1080 1.14|..." where a text is wider than in Arial, for which the server counts letters,
+// "1920x1080 300,240,plots|..." where dividers have been moved (columns.js). A plot
 // that is far from as high as the server took it has its height: "...|Poles~310" (room.js).
 // And brings the tab to the front in which a newly chosen scenario opens: viser's server cannot.
 (() => {
@@ -31,7 +32,8 @@
     const front = tabs.map((title) => (rooms[title] ? `${title}~${rooms[title]}` : title));
     const alone = window.schuler.alone ? " alone" : "";
     const touch = matchMedia("(pointer: coarse)").matches ? " touch" : "";
-    return [`${innerWidth}x${innerHeight}${alone}${touch}${measure().trimEnd()}`, ...front].join("|");
+    const columns = window.schuler.columns?.() ?? ""; // columns.js
+    return [`${innerWidth}x${innerHeight}${alone}${touch}${measure().trimEnd()}${columns}`, ...front].join("|");
   }
 
   window.schuler.state = state;
@@ -77,6 +79,7 @@
   window.schuler.changed(openTab);
   addEventListener("resize", () => soon(150));
   addEventListener("filled-plots", () => soon());
+  addEventListener("columns", () => soon());
   addEventListener("click", () => soon(), true);
   addEventListener("keyup", (event) => event.target instanceof Element && event.target.closest('[role="tab"]') && soon());
   setInterval(() => window.schuler.busy() || report(), 1000);

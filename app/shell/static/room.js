@@ -8,7 +8,8 @@
   const LEAST_PX = { plotly: 160, chart: 84 };
   const VIEWPORT = ".mantine-ScrollArea-viewport";
   // Type (px), padding (em) and, of the last, letter spacing (em): for fonts as wide as DejaVu Sans.
-  const TABS = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
+  const TYPES = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
+  const TABS = [true, false].flatMap((labelled) => TYPES.slice(0, labelled ? -2 : undefined).map((type) => ({ type, labelled })));
   const FOLDS = "details[data-sb-folds]";
   const waiting = new Set();
   const chosen = new Map(); // id of what folds -> whether the user has opened it
@@ -30,7 +31,31 @@
     if (lines) chosen.set(lines.id, !lines.open);
   }, true);
 
+  // The tools above a plot stand beside the tabs of their panel, where both have room in one row (page.css).
+  const TOOL = ':is([data-sb-kind="select"], [data-sb-kind="number"], [data-sb-kind="other"], [data-sb-kind="mark"])';
+  function raise(viewport) {
+    const strip = viewport.closest("[data-dock-group]")?.querySelector(":scope > [data-dock-strip]");
+    const more = strip?.parentElement.querySelector(":scope > .sb-more-tabs"); // groups.js
+    const area = (more ?? strip)?.nextElementSibling;
+    if (!area) return;
+    const tools = [...viewport.querySelectorAll(`[data-sb-holds~="tools"] > ${TOOL}`)];
+    const tabs = [...(strip?.children ?? [])];
+    const look = viewport.querySelector(".sb-look")?.title;
+    if (look) tabs.find((tab) => tab.ariaSelected === "true")?.setAttribute("title", look);
+    const shown = tabs.filter((tab) => tab.offsetWidth > 0); // those of the list behind the row have no place in it
+    if (tools.length < 2 || shown.length === 0 || new Set(shown.map((tab) => tab.offsetTop)).size > 1) return area.removeAttribute("data-sb-up");
+    area.dataset.sbUp = "";
+    area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
+    const start = strip.offsetParent === shown[0].offsetParent ? strip.offsetLeft : 0;
+    const end = Math.max(...shown.map(({ offsetLeft, offsetWidth }) => offsetLeft + offsetWidth));
+    area.style.setProperty("--sb-left-px", `${end - start + 10}px`);
+    area.style.setProperty("--sb-right-px", `${(more?.offsetWidth ?? 0) + 8}px`);
+    const rows = tools.map((tool) => Math.round(tool.getBoundingClientRect().top));
+    if (Math.max(...rows) - Math.min(...rows) > strip.offsetHeight / 2 || viewport.scrollWidth > viewport.clientWidth) area.removeAttribute("data-sb-up");
+  }
+
   function fill(viewport) {
+    raise(viewport);
     fold(viewport);
     const frame = viewport.getBoundingClientRect();
     const seen = (plot) => viewport.contains(plot) && plot.getClientRects().length > 0;
@@ -68,14 +93,16 @@
 
   function fit(strip) {
     if (strip.getClientRects().length === 0) return;
-    const rows = ([type, padding, spacing = 0]) => {
+    const tabs = [...strip.children].filter((tab) => tab.getClientRects().length > 0);
+    const rows = ({ type: [type, padding, spacing = 0], labelled }) => {
+      strip.toggleAttribute("data-sb-bare", !labelled); // without the names of groups (groups.js)
       strip.style.setProperty("--sb-type", `${type}px`);
       strip.style.setProperty("--sb-padding", `${padding}em`);
       strip.style.setProperty("letter-spacing", `${spacing}em`);
-      return new Set([...strip.children].map((tab) => tab.offsetTop)).size;
+      return new Set(tabs.map((tab) => tab.offsetTop)).size;
     };
     const fewest = rows(TABS.at(-1));
-    TABS.find((tabs) => rows(tabs) === fewest);
+    TABS.find((look) => rows(look) === fewest);
   }
 
   // In the next frame: what changes a size while sizes are told would be told of in vain.

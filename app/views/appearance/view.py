@@ -25,7 +25,7 @@ DARK, PRESENTATION, LANGUAGE = Text("dark page"), Text("presentation size"), Tex
 _RULES = (Path(__file__).parent / "static" / "presentation.css").read_text(encoding="utf-8")
 _INVERT = 0.93
 """White becomes a grey of 7 %, black one of 93 %."""
-DARK_CSS = f"html{{background:#fff;filter:invert({_INVERT}) hue-rotate(180deg)}}"
+DARK_CSS = f"html{{--sb-look:invert({_INVERT}) hue-rotate(180deg);background:#fff;filter:var(--sb-look)}}"
 """The light page with its lightness turned round, and its hues turned back: the blue method is blue in both.
 
 The root's own filter leaves fixed elements where they are; those of other elements would not.
@@ -196,6 +196,8 @@ _CHOICES = {
         Text("log: magnitudes of the errors, on an axis of decades. Linear: with their signs."),
     ),
 }
+_FIT = Text("as needed")
+_FACTORS: tuple[str, ...] = (_FIT, *"1 2 5 10 20 50 100 200 500 1000 2000 5000".split())
 BANDS = Text("bands")
 _BANDS = {
     Text("off"): "none",
@@ -238,6 +240,11 @@ class AppearanceView(View):
             gui.add_html(notices.heading(Text("Units and axes")), order=0)
             for order, (label, (field, hint)) in enumerate(_CHOICES.items(), start=1):
                 self._choosers[field] = self._chooser(label, field, hint, order)
+            self._factor: Any = gui.add_dropdown(
+                Text("enlarge errors in 3D"), _FACTORS, order=9,
+                hint=Text("Factor by which the 3D view enlarges the position errors; as needed: chosen so "
+                "that they show."),
+            )  # fmt: skip
             gui.add_html(notices.heading(Text("Bands behind the error curves")), order=10)
             self._bands: Any = gui.add_dropdown(
                 BANDS,
@@ -270,10 +277,15 @@ class AppearanceView(View):
             gui.add_html(notices.heading(Text("Page")), order=30)
             language.build()
             self._looks.build()
+        self._factor.on_update(if_user(self._enlarge))
         self._bands.on_update(if_user(lambda: self.frame.show(envelope=_BANDS[self._bands.value])))
         format.on_click(
             lambda event: export.save(plot.value, event.target.value) if event.client is not None else None
         )
+
+    def _enlarge(self) -> None:
+        factor = self._factor.value
+        self.frame.show(exaggeration=None if factor == _FIT else float(factor))
 
     def _chooser(self, label: str, field: str, hint: str, order: int) -> Any:
         options = {unit_sign(key): key for key in get_args(Display.model_fields[field].annotation)}
@@ -286,6 +298,8 @@ class AppearanceView(View):
         display = self.session.display
         for field, chooser in self._choosers.items():
             chooser.value = unit_sign(getattr(display, field))
+        factor = display.exaggeration
+        self._factor.value = _FIT if factor is None else f"{factor:g}"
         self._bands.value = next(word for word, key in _BANDS.items() if key == display.envelope)
         self._looks.show(display)
         self.follow_jobs()

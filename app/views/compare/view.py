@@ -38,6 +38,7 @@ class CompareView(PictureView[str]):
 
     title = Text("Compare")
     place = "lower"
+    group = "decide"
     look_for = Text("Pinned runs beside the present one: a heading sorts, B flips.")
 
     def __init__(self, frame: Frame) -> None:

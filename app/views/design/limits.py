@@ -183,7 +183,7 @@ def _worst(limits: Sequence[Limit], diverged: int) -> str:
     unit = limit_unit(one.quantity) / row_.size
     middle = Text("no value") if worst.median is None else number(worst.median * unit, 3)
     words = Text(
-        "{label}: median {median}, limit {sign} {limit} {unit}",
+        "{label}: median {median}, limit {sign}\u00a0{limit}\u00a0{unit}",
         label=short_label(one.quantity),
         median=middle,
         sign=SIGNS[one.sense],

@@ -38,6 +38,7 @@ class DesignView(PlotlyView):
 
     title = Text("Design")
     place = "lower"
+    group = "decide"
     look_for = Text(
         "Which methods meet the limits, and with what probability; which source the error comes from."
     )

@@ -224,12 +224,8 @@ def _damping(scenario: Scenario, method: Method, state: State) -> Iterator[Part]
     """Difference to the log, network, switch, and who decides."""
     y, main = _BRANCH, _LINE
     yield Line(((228, main), (228, y - 9)), own=True)
-    if method.kind.uses_log:
-        yield _log(scenario, y)
-        yield Line(((112, y), (219, y)), own=True)
-        yield Word(166, y - 7, "V_r")
-    yield Sum(228, y, ("top",))
-    yield Line(((237, y), (264, y)), own=True)
+    log = _log(scenario, y) if method.kind.uses_log else None
+    yield from _compared(y, log, "V_r")
     network = method.kind.network(method)
     form = method.kind.acting(network.transfer(scenario.omega_s)).realisation
     values = _values(network, scenario.omega_s, state.coefficient)
@@ -243,11 +239,27 @@ def _damping(scenario: Scenario, method: Method, state: State) -> Iterator[Part]
         yield Line(((154, y - 36), (140, y - 36), (140, main + 9)), own=True)
     height = 22.0 + 15.0 * (len(lines) - 1)
     yield Block(264, y - 18, 136, height, lines, METHOD, own=True)
+    yield from _through_switch(y, main)
+    if method.policy.id != "constant" or (scenario.reference.interrupted and method.kind.referenced):
+        yield from _decision(method, y)
+
+
+def _compared(y: float, log: Block | None, name: str, *above: Line) -> Iterator[Part]:
+    """What the log says, if there is one, from what comes from above."""
+    if log is not None:
+        yield log
+        yield Line(((112, y), (219, y)), own=True)
+        yield Word(166, y - 7, name)
+    yield from above
+    yield Sum(228, y, ("top",))
+    yield Line(((237, y), (264, y)), own=True)
+
+
+def _through_switch(y: float, main: float) -> Iterator[Part]:
+    """From a network through the switch up into a line."""
     yield Line(((400, y), (418, y)), own=True, arrow=False)
     yield Switch(418, y)
     yield Line(((454, y), (480, y), (480, main + 9)), own=True)
-    if method.policy.id != "constant" or (scenario.reference.interrupted and method.kind.referenced):
-        yield from _decision(method, y)
 
 
 def _decision(method: Method, y: float) -> Iterator[Part]:
@@ -267,11 +279,7 @@ def _filter(scenario: Scenario) -> Iterator[Part]:
     """A Kalman filter in the place of network and switch."""
     y = _BRANCH
     yield Line(((228, _LINE), (228, y - 9)), own=True)
-    yield _log(scenario, y)
-    yield Line(((112, y), (219, y)), own=True)
-    yield Word(166, y - 7, "V_r")
-    yield Sum(228, y, ("top",))
-    yield Line(((237, y), (264, y)), own=True)
+    yield from _compared(y, _log(scenario, y), "V_r")
     yield Block(264, y - 22, 136, 44, (Text("Kalman filter"), Text("K of its covariance")), METHOD, own=True)
     yield Line(((400, y), (480, y), (480, _LINE + 9)), own=True)
     yield Word(440, y - 7, "δV, φ, ε")
@@ -321,18 +329,11 @@ def _azimuth(scenario: Scenario, method: Method, top: float) -> Iterator[Part]:
         yield Word(500, low - 26, "w", "start")
         return
     network = method.azimuth
-    if method.kind.uses_log:
-        yield Block(8, low - 22, 104, 44, (Text("log"), "L_r, V_r"), LOG)
-        yield Line(((112, low), (219, low)), own=True)
-        yield Word(166, low - 7, "ω_Ur")
-    yield Line(((228, y), (228, low - 9)), own=True)
-    yield Sum(228, low, ("top",))
-    yield Line(((237, low), (264, low)), own=True)
+    log = Block(8, low - 22, 104, 44, (Text("log"), "L_r, V_r"), LOG) if method.kind.uses_log else None
+    yield from _compared(low, log, "ω_Ur", Line(((228, y), (228, low - 9)), own=True))
     lines = ("1 − Y(s)", network.id, *_values(network, EARTH_RATE, None))
     yield Block(264, low - 18, 136, 22.0 + 15.0 * (len(lines) - 1), lines, METHOD, own=True)
-    yield Line(((400, low), (418, low)), own=True, arrow=False)
-    yield Switch(418, low)
-    yield Line(((454, low), (480, low), (480, y + 9)), own=True)
+    yield from _through_switch(low, y)
 
 
 def _log(scenario: Scenario, y: float) -> Block:

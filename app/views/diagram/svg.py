@@ -28,10 +28,10 @@ _STYLE = (
 
 
 class _Pen:
-    """Colours of a picture."""
+    """Colours of a picture, and whether its blocks open their controls."""
 
-    def __init__(self, color: str, state: State) -> None:
-        self.color, self.closed = color, state.damped
+    def __init__(self, color: str, state: State, commands: bool) -> None:
+        self.color, self.closed, self.commands = color, state.damped, commands
 
     def of(self, own: bool) -> str:
         """Colour of a line; grey where the open switch leaves it dead."""
@@ -52,17 +52,15 @@ def diagram_svg(found: Diagram, color: str, state: State, commands: bool = True)
     commands : bool
         Blocks open their controls.
     """
-    pen = _Pen(color, state)
+    pen = _Pen(color, state, commands)
     parts = [_drawn(part, pen) for part in found.parts]
-    if not commands:
-        parts = [re.sub(r' (data-command|role|tabindex|aria-label)="[^"]*"', "", part) for part in parts]
     ends = Text.joined("", (_end(hue) for hue in (style.MUTED, color, style.REFERENCE)))
     return Text(
         '<svg class="sb-d" viewBox="0 0 {width} {height:g}" role="img" xmlns="http://www.w3.org/2000/svg" '
         'font-family="{font}" aria-label="{told:html}"><style>{css}</style><defs>{ends}</defs>{parts}</svg>',
         width=WIDTH,
         height=found.height,
-        font=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        font=style.SVG_FONT,
         told=found.told,
         css=_STYLE,
         ends=ends,
@@ -116,7 +114,7 @@ def _(part: Block, pen: _Pen) -> str:
         height=part.height,
         stroke=f' style="stroke:{pen.of(True)}"' if part.own else "",
     )
-    if not part.opens:
+    if not (part.opens and pen.commands):
         return Text("<g>{box}{lines}</g>", box=box, lines=lines)
     return Text(
         '<g data-command="tab {opens}" role="button" tabindex="0" aria-label="{name:html}">{box}{lines}</g>',

@@ -1,12 +1,15 @@
 """Tab "Diagram": the selected method's loop as blocks, at the time that the 3D view shows."""
 
-from navcore.engine.run import MethodRun
+from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
+from navcore.law.policy.variation import Variation
 from navcore.mechanization.recorder import DAMPED_COLUMN, XI_COLUMN
 from schuler_bench.plots import style
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.view import Frame, PictureView, Tab
 from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.forecast import forecast_svg
+from schuler_bench.views.diagram.membership import membership_svg
 from schuler_bench.views.diagram.svg import diagram_svg
 
 
@@ -15,6 +18,7 @@ class DiagramView(PictureView[str]):
 
     title = Text("Diagram")
     place = "upper"
+    group = "network"
     look_for = Text(
         "Where the log enters and what the network does with it. A click on a block opens its tab."
     )
@@ -38,7 +42,7 @@ class DiagramView(PictureView[str]):
         """Draw the loop of the selected method."""
         index = min(found.selected, len(found.run.methods) - 1)
         self._state = state_at(found.run.methods[index], self._time_s)
-        return _html(diagram_svg(diagram(found.run.scenario, index, self._state), _color(index), self._state))
+        return _html(found.run, index, self._state)
 
     def show(self, picture: str) -> None:
         """Show the picture."""
@@ -53,7 +57,7 @@ class DiagramView(PictureView[str]):
         state = state_at(run.methods[index], t_s)
         if state != self._state:
             self._state = state
-            self.show(_html(diagram_svg(diagram(run.scenario, index, state), _color(index), state)))
+            self.show(_html(run, index, state))
 
 
 def state_at(method: MethodRun, t_s: float) -> State:
@@ -65,12 +69,24 @@ def state_at(method: MethodRun, t_s: float) -> State:
     return State(bool(row[DAMPED_COLUMN] > 0.5), coefficient)
 
 
-def _color(index: int) -> str:
-    return style.method_color(index)
+def _html(run: Run, index: int, state: State) -> str:
+    """Loop of a method in a state, as the page shows it, and beneath it what its figure is in the paper."""
+    svg = diagram_svg(diagram(run.scenario, index, state), style.method_color(index), state)
+    return Text(
+        '<div class="sb-diagram" style="padding:4px 10px">{svg}{beneath}</div>',
+        svg=svg,
+        beneath=beneath(run, index),
+    )
 
 
-def _html(svg: str) -> str:
-    return Text('<div class="sb-diagram" style="padding:4px 10px">{svg}</div>', svg=svg)
+def beneath(run: Run, index: int) -> str:
+    """Forecast of an averaging method, membership functions of the policy `variation`; else empty."""
+    method = run.scenario.method[index]
+    if method.kind.carrying == "copies":
+        return forecast_svg(run, index)
+    if isinstance(method.policy, Variation) and not method.undamped:
+        return membership_svg(method.policy)
+    return ""
 
 
 VIEW = DiagramView

@@ -17,6 +17,7 @@ from schuler_bench.session.display import Display
 from schuler_bench.session.requirements import error_limits
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell import notices
+from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.stack import Stack, room_px
 from schuler_bench.shell.view import Figures, Frame, PictureView, Tab, if_user
 from schuler_bench.views.errors.figure import (
@@ -37,8 +38,14 @@ def legend_html(
     pins: Sequence[Pinned] = (),
     envelope: Envelope | None = None,
     display: Display | None = None,
+    *,
+    methods: bool = True,
 ) -> str:
-    """One legend for a stack of plots: a bar and the name of every method; a click dims or hides it."""
+    """One legend for a stack of plots: a bar and a name each; a click dims or hides a curve.
+
+    Without ``methods`` it leaves out those of the run itself, which the strip of results names; "" where that
+    leaves nothing.
+    """
     state_of = (display or Display()).state_of
     items = [
         entry(
@@ -48,6 +55,7 @@ def legend_html(
             state_of(method.method.name),
         )
         for i, method in enumerate(run.methods)
+        if methods
     ]
     if overlay is not None:
         old = Text(" of an earlier scenario") if overlay.old else ""
@@ -64,6 +72,8 @@ def legend_html(
     if envelope is not None:
         bar = f"height:10px;background:{style.MUTED}{'22' if envelope.old else '55'}"
         items.append(_legend_item(envelope.label, bar, Text.joined(" ", envelope.details)))
+    if not items:
+        return ""
     return Text(
         '<div class="sb-legend" role="group" aria-label="legend" style="padding-left:{y_size}px">'
         "{items}</div>",
@@ -93,8 +103,12 @@ OWN_NOISE = Text(
     "Left: the linear model (solid) and the full strapdown (dashed) on the noise of the verification, "
     "which is another draw than the run's. Right: strapdown minus linear model."
 )
-_OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
-"""Two abreast: attitude left, velocity and position right."""
+ALL = Text("All errors, small")
+_SMALL: dict[str, tuple[str, ...]] = {
+    OVERVIEW: ("phi_e", "dve", "phi_n", "position"),
+    ALL: ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position"),
+}
+"""Plots two abreast: left, right."""
 _TWO = '<div class="sb-two"></div>'
 _KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in TITLES.items()}
 _VERIFIED_KEYS: dict[str, str] = {
@@ -130,6 +144,7 @@ class ErrorsView(PictureView[ErrorCurves]):
 
     title = Text("Errors")
     place = "lower"
+    group = "run"
     look_for = Text(
         "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind."
     )
@@ -149,26 +164,30 @@ class ErrorsView(PictureView[ErrorCurves]):
         gui = self.frame.gui
         self._stack = Stack(gui, tab)
         with tab:
-            groups = (OVERVIEW, *(name for name in GROUPS if name != OVERVIEW), VERIFICATION)
+            groups = (OVERVIEW, ALL, *(name for name in GROUPS if name != OVERVIEW), VERIFICATION)
             self._group = gui.add_dropdown(
                 Text("curves"),
                 groups,
                 hint=Text(
-                    "Overview: one small plot for each quantity. Attitude, Velocity, Position: larger plots "
+                    "Overview: tilts, east velocity and position. All errors: north and heading too. "
+                    "Attitude, Velocity, Position: larger plots "
                     "of a few. Verification: the full strapdown beside the linear model, and "
                     "their difference."
                 ),
                 order=0,
             )
+            gui.add_html(TOOLS, order=0)
             self._legend = gui.add_html("", order=1)
         self._group.on_update(if_user(self.frame.redraw))
 
     def picture(self, found: Shown) -> ErrorCurves:
         """Make the plots of the chosen quantities."""
         group = self._group.value
+        methods = self.frame.layout().alone
         if group == VERIFICATION:
-            return _verified_curves(found.verified, found.display)
-        return error_curves(found, _OVERVIEW_KEYS if group == OVERVIEW else GROUPS[group], group == OVERVIEW)
+            return _verified_curves(found.verified, found.display, methods=methods)
+        small = _SMALL.get(group)
+        return error_curves(found, small or GROUPS[group], small is not None, methods=methods)
 
     def show(self, picture: ErrorCurves) -> None:
         """Show the plots that are chosen, below their legend."""
@@ -201,7 +220,9 @@ class ErrorsView(PictureView[ErrorCurves]):
         return pictures
 
 
-def error_curves(found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast: bool = False) -> ErrorCurves:
+def error_curves(
+    found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast: bool = False, *, methods: bool = True
+) -> ErrorCurves:
     """Error curves of what is shown, with pins, envelope and limits."""
     plots = error_plots(
         found.run,
@@ -210,11 +231,11 @@ def error_curves(found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast:
         envelope=found.envelope,
         limits=error_limits(found.run.scenario.requirement, found.run),
     )
-    legend = legend_html(found.run, None, found.pins, found.envelope, found.display)
+    legend = legend_html(found.run, None, found.pins, found.envelope, found.display, methods=methods)
     return ErrorCurves({key: plots[key] for key in keys}, legend, two_abreast)
 
 
-def _verified_curves(verified: Verified | None, display: Display) -> ErrorCurves:
+def _verified_curves(verified: Verified | None, display: Display, *, methods: bool = True) -> ErrorCurves:
     """Both models on the verification's noise, beside their difference; without a verification no plot."""
     if verified is None:
         return ErrorCurves({}, notices.note([NOT_VERIFIED], "info"))
@@ -222,7 +243,8 @@ def _verified_curves(verified: Verified | None, display: Display) -> ErrorCurves
     overlay = Overlay(verification.strapdown, verified.old)
     return ErrorCurves(
         verification_plots(verification, old=verified.old, display=display),
-        notices.note([OWN_NOISE], "info") + legend_html(verification.linear, overlay, display=display),
+        notices.note([OWN_NOISE], "info")
+        + legend_html(verification.linear, overlay, display=display, methods=methods),
         two_abreast=True,
     )
 

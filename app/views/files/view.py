@@ -6,6 +6,9 @@ from schuler_bench.session.uploads import LARGEST_FILE, MIB, Upload
 from schuler_bench.shell import notices
 from schuler_bench.shell.opening import METRICS, SCENARIO
 from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.views.files.columns import Columns
+
+_UNNAMED = Text("columns still to be named")
 
 
 class FilesView(View):
@@ -16,6 +19,7 @@ class FilesView(View):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
+        self._columns = Columns(frame)
         add, opening = frame.commands.register, frame.opening
         add("save", lambda _: opening.give_file(SCENARIO), Text("Save the scenario (TOML)"), "Ctrl+S")
         add("save-numbers", lambda _: opening.give_file(METRICS), Text("Save the numbers (JSON)"))
@@ -28,9 +32,10 @@ class FilesView(View):
         with tab:
             gui.add_html(notices.heading(Text("Run on recordings")), order=0)
             kinds = Text(
-                "Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file "
+                "Speed log, track and heading: NMEA 0183, CSV, Parquet, MAT or npz, one file "
                 "after the other, at most {largest_file:.0f} MiB each. A recorded IMU (PSINS "
-                "or CSV) runs as full strapdown. A scenario (.toml) is opened.",
+                "or a table) runs as full strapdown. A scenario (.toml) is opened. What the columns "
+                "of a table mean is guessed; it can be changed below.",
                 largest_file=LARGEST_FILE / MIB,
             )
             gui.add_html(notices.small(kinds), order=1)
@@ -38,6 +43,7 @@ class FilesView(View):
             self._list = gui.add_html("", order=3)
             self._use = gui.add_button(Text("Run on these files"), order=4, visible=False)
             self._forget = gui.add_button(Text("Remove the files"), color="gray", order=5, visible=False)
+            self._columns.build(6)
             gui.add_html(notices.heading(Text("Save")), order=10)
             save = [
                 gui.add_button(Text("Download {name}", name=name), color="gray", order=11)
@@ -53,22 +59,23 @@ class FilesView(View):
         """List the uploaded files and what they hold."""
         uploads = self.session.uploads
         self._list.content = Text.joined("", (_entry(name, upload) for name, upload in uploads.files.items()))
-        self._use.visible = self._forget.visible = bool(uploads.files)
+        self._forget.visible = bool(uploads.files)
+        self._use.visible = any(not upload.faults for upload in uploads.files.values())
+        self._columns.follow()
 
 
 def _entry(name: str, upload: Upload) -> str:
     text = "\n".join(line.removeprefix("  ") for line in upload.text)
     return Text(
         '<details class="sb-file" style="margin:0 10px 8px;font-size:12.5px;color:{ink}">'
-        "<summary><b>{name:html}</b> <span style='color:{muted}'>{kind:html}: "
-        "{sorted:html}</span></summary><div "
-        'style="white-space:pre-wrap;margin-top:4px;color:{muted}">{text:html}</div>'
+        "<summary><b>{name:html}</b> <span style='color:{muted}'>{kind:html}{sorted:html}</span></summary>"
+        '<div style="white-space:pre-wrap;margin-top:4px;color:{muted}">{text:html}</div>'
         "{note}</details>",
         ink=style.INK,
         name=name,
         muted=style.MUTED,
-        kind=upload.kind,
-        sorted=", ".join(sorted(upload.quantities)),
+        kind=upload.kind or _UNNAMED,
+        sorted="".join((": ", ", ".join(sorted(upload.quantities)))) if upload.quantities else "",
         text=text,
         note=notices.note(upload.warnings, "warning"),
     )

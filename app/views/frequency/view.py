@@ -21,6 +21,7 @@ class FrequencyView(PlotlyView):
 
     title = Text("Frequency")
     place = "upper"
+    group = "network"
     look_for = Text(
         "Below 0 dB an error is damped, above it is amplified. Handle: across frequency, up less damping."
     )

@@ -55,7 +55,7 @@ def table_svg(tuning: Tuning, color: str) -> str:
         'font-family="{font}" font-size="12.5" fill="{ink}">{parts}</svg>',
         width=WIDTH,
         height=HEIGHT,
-        font=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        font=style.SVG_FONT,
         ink=style.INK,
         parts=Text.joined("", parts),
     )

@@ -1,6 +1,6 @@
 """Tab "Method": which method the controls edit, its network, policy and switching."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -16,20 +16,17 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec, Path
-from schuler_bench.plots import style
 from schuler_bench.plots.effective import earth_mode_text
 from schuler_bench.plots.legend import severity, warnings_for
 from schuler_bench.plots.units import number, settling
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell import notices
 from schuler_bench.shell.control import Control, Section, controls_of
-from schuler_bench.shell.palette import COPY_METHOD, PASTE
 from schuler_bench.shell.searching import show_html
-from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.views.method.chips import ADD, COPY, EYE, REMOVE, RENAME, SELECT, chips_html
 from schuler_bench.views.method.tuning import TuningPanel
 
-ADD, COPY, REMOVE = Text("add"), Text("copy"), Text("remove")
-COPY_TEXT, PASTE_TEXT = Text("copy as TOML"), Text("paste TOML")
 _TAKEN = Text("from the sensors and the log of the scenario")
 NO_DESIGN = Text("no (σ, ζ) gives these K")
 _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
@@ -48,56 +45,27 @@ class MethodView(View):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._names: tuple[str, ...] = ()
         add = frame.commands.register
-        add("method-add", lambda _: self._arrange(ADD), Text("Add a method"))
-        add("method-copy", lambda _: self._arrange(COPY), Text("Copy the method"))
-        add("method-remove", lambda _: self._arrange(REMOVE), Text("Remove the method"))
+        add(ADD, lambda _: self._arrange(ADD), Text("Add a method"))
+        add(COPY, lambda _: self._arrange(COPY), Text("Copy the method"))
+        add(REMOVE, lambda _: self._arrange(REMOVE), Text("Remove the method"))
+        add(RENAME, lambda name: self._arrange(RENAME, name))
+        add(SELECT, self._with_method(lambda at: self.session.select(at, None)))
+        add(EYE, self._with_method(self._look))
 
     def build(self, tab: Tab) -> None:
-        """Make the chooser, the buttons and the places for controls and notes."""
+        """Make the chips, and the places for controls and notes."""
         gui, edit = self.frame.gui, self.frame.editor.edit
         with tab:
-            self._chooser: Any = gui.add_dropdown(
-                "method",
-                ("",),
-                hint=Text("The controls below belong to this method."),
-                order=0,
-            )
-            self._chip = gui.add_html("", order=0.5)
-            buttons = gui.add_button_group(
-                Text("methods"),
-                (ADD, COPY, REMOVE),
-                hint=Text(
-                    "Add a method, copy the present one to vary it, or remove it. All methods run on the "
-                    "same truth, sensors and log."
-                ),
-                order=1,
-            )
-            clipboard = gui.add_button_group(
-                Text("as text"),
-                (COPY_TEXT, PASTE_TEXT),
-                hint=Text(
-                    "Copy the method as TOML, or paste one that was copied, from this session or another. "
-                    "Ctrl+V pastes too."
-                ),
-                order=1.5,
-            )
-            self._unused = gui.add_html("", order=19, visible=False)
-            self._warnings = gui.add_html("", order=28, visible=False)
-            self._loop = gui.add_html("", order=29, visible=False)
-        self._chooser.on_update(if_user(self._choose))
-        buttons.on_click(
-            lambda event: self._arrange(event.target.value) if event.client is not None else None
-        )
-        self._arranging = buttons, clipboard
-        ask = self.frame.commands.run
-        clipboard.on_click(if_user(lambda: ask(COPY_METHOD if clipboard.value == COPY_TEXT else PASTE)))
+            self._chips = gui.add_html("", order=0)
+            self._loop = gui.add_html("", order=40, visible=False)
+            self._warnings = gui.add_html("", order=41, visible=False)
+            self._unused = gui.add_html("", order=42, visible=False)
         places = {
-            "method": 2.0,
-            "settings": 10.0,
-            "network": 20.0,
-            "parameters": 30.0,
+            "network": 1.0,
+            "parameters": 10.0,
+            "method": 50.0,
+            "settings": 51.0,
             "azimuth": 60.0,
             "policy": 70.0,
             "switching": 100.0,
@@ -115,19 +83,31 @@ class MethodView(View):
         """Controls of the method's fields."""
         return controls_of(self.sections)
 
-    def _choose(self) -> None:
-        if self._chooser.value in self._names:
-            self.session.select(self._names.index(self._chooser.value), None)
+    def _with_method(self, act: Callable[[int], None]) -> Callable[[str], None]:
+        """Command with the number of a method; any other is of a row of chips that has gone."""
 
-    def _arrange(self, what: str) -> None:
-        """Add, copy or remove a method."""
+        def run(number: str) -> None:
+            with self.session.lock:
+                if number.isdecimal() and int(number) < len(self.session.scenario.method):
+                    act(int(number))
+
+        return run
+
+    def _look(self, at: int) -> None:
+        """Hide the curves of a method, or show them again."""
+        self.frame.show(legend=self.session.display.looked(self.session.scenario.method[at].name))
+
+    def _arrange(self, what: str, name: str = "") -> None:
+        """Add, copy, remove or rename a method."""
         session = self.session
         with session.lock, notices.told(self.frame.client, Text("Not possible"), self.frame.refresh):
             at = session.selected
-            if what in (ADD, COPY):
-                changed, at = edits.with_method(session.scenario, at if what == COPY else None)
-            else:
+            if what == RENAME:
+                changed = edits.with_value(session.scenario, ("method", at, "name"), name)
+            elif what == REMOVE:
                 changed = edits.without_method(session.scenario, at)
+            else:
+                changed, at = edits.with_method(session.scenario, at if what == COPY else None)
             session.change(changed, None, selected=at)
 
     def follow_scenario(self) -> None:
@@ -137,9 +117,16 @@ class MethodView(View):
         self._show_warnings(self.session.run, scenario, index)
 
     def follow_display(self) -> None:
-        """Leave what arranges the methods to the normal size: a lecture moves their parameters."""
-        for buttons in self._arranging:
-            buttons.visible = self.session.display.size == "normal"
+        """Show whose curves are hidden, and in the normal size what arranges the methods."""
+        self._show_chips()
+
+    def _show_chips(self) -> None:
+        names = [method.name for method in self.session.scenario.method]
+        display = self.session.display
+        hidden = [display.state_of(name) == "hidden" for name in names]
+        show_html(
+            self._chips, chips_html(names, self.session.selected, hidden, arranging=not display.enlarged)
+        )
 
     def follow_jobs(self) -> None:
         """Show how far the search for a damping table is."""
@@ -152,15 +139,11 @@ class MethodView(View):
 
     def _show(self, scenario: Scenario, index: int, moved: Control | None) -> None:
         """Show a method of the scenario."""
-        names = tuple(method.name for method in scenario.method)
-        if names != self._names:
-            self._names = names
-            self._chooser.options = names
-        self._chooser.value = names[index]
-        self._chip.content = _chip(index)
+        self._show_chips()
         method, path = scenario.method[index], ("method", index)
         values = _values(scenario, index)
-        self.sections["method"].show(form.fields(Method, path), values, moved)
+        own_fields = [spec for spec in form.fields(Method, path) if spec.path[-1] != "name"]
+        self.sections["method"].show(own_fields, values, moved)
         blocks = method.kind.blocks
         network = [described(spec, method) for spec in form.fields(type(method.network), (*path, "network"))]
         self.sections["network"].show(
@@ -262,7 +245,7 @@ def first_line(kind: type) -> str:
 
 def _values(scenario: Scenario, index: int) -> dict[Path, Any]:
     method, path = scenario.method[index], ("method", index)
-    values: dict[Path, Any] = {(*path, "name"): method.name, (*path, "damping"): method.damping}
+    values: dict[Path, Any] = {(*path, "damping"): method.damping}
     network = method.network.taken() | edits.network_values(scenario, index) | {"id": method.network.id}
     return values | {(*path, "network", name): _shown(value) for name, value in network.items()}
 
@@ -274,14 +257,6 @@ def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
 def _shown(value: Any) -> Any:
     # What follows from other parameters has endless digits; six are shown, all are used.
     return form.significant(value, 9) if isinstance(value, float) else value
-
-
-def _chip(index: int) -> str:
-    return Text(
-        '<div style="height:4px;margin:-4px 10px 8px calc(8.4rem + '
-        '10px);border-radius:2px;background:{method_color:html}"></div>',
-        method_color=style.method_color(index),
-    )
 
 
 VIEW = MethodView

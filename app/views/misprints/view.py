@@ -5,7 +5,7 @@ from functools import lru_cache
 from typing import Any
 
 from navcore.foundation.text import Text
-from schuler_bench.misprints import MISPRINTS, Comparison
+from schuler_bench.misprints import MISPRINTS, Comparison, Misprint
 from schuler_bench.plots.plotly_data import enlarged
 from schuler_bench.shell.layout import CHOOSER_PX
 from schuler_bench.shell.view import Frame, Tab, View, if_user
@@ -15,10 +15,17 @@ _WORDS_PX = {True: 96, False: 186}
 """Height of the words and numbers above the plot, in a wide window and in a narrow one: a first estimate."""
 _BETWEEN_PX = 8
 _MISPRINT, _SWITCH = Text("misprint"), Text("form shown")
-_TITLES = {
-    Text("{paper}, {where}: {consequence}", paper=m.paper, where=m.where, consequence=m.consequence): id
-    for id, m in MISPRINTS.items()
-}
+
+
+def _title(found: Misprint) -> str:
+    """Entry of the chooser; what is no error says so."""
+    parts = {"paper": found.paper, "where": found.where, "consequence": found.consequence}
+    if found.remark:
+        return Text("{paper}, {where} (no misprint): {consequence}", **parts)
+    return Text("{paper}, {where}: {consequence}", **parts)
+
+
+_TITLES = {_title(m): id for id, m in MISPRINTS.items()}
 
 
 @lru_cache(maxsize=32)
@@ -32,6 +39,7 @@ class MisprintsView(View):
 
     title = Text("Misprints")
     place = "upper"
+    group = "more"
     look_for = Text("What a paper prints beside what its text and figures say: look where the curves part.")
 
     def __init__(self, frame: Frame) -> None:
@@ -50,7 +58,8 @@ class MisprintsView(View):
                 tuple(_TITLES),
                 order=0,
                 hint=Text(
-                    "Errors in the papers that change a result; both forms are computed by the same code."
+                    "Errors in the papers that change a result, and two that are none but cost much where "
+                    "they are taken over; both forms are computed by the same code."
                 ),
             )
             self._switch: Any = gui.add_dropdown(

@@ -37,6 +37,7 @@ class PolesView(PlotlyView):
 
     title = Text("Poles")
     place = "upper"
+    group = "network"
     look_for = Text(
         "The farther left a pole, the faster it dies away; the steeper, the more it swings. "
         "Drag the handle to move it."
@@ -132,7 +133,7 @@ class PolesView(PlotlyView):
 
     @property
     def _block(self) -> Block:
-        return "azimuth" if self.session.display.poles == "azimuth" else "network"
+        return _block_of(self.session.display)
 
     @property
     def _method(self) -> Method:
@@ -172,7 +173,8 @@ class PolesView(PlotlyView):
         """Pole map, or the modes of the whole system."""
         if found.display.poles == "whole":
             return whole_system_figure(both, self.aspect, width_px=self.width_px)
-        slow = found.display.poles == "azimuth"
+        block = _block_of(found.display)
+        slow = block == "azimuth"
         plot = poles(
             azimuth_loops(both) if slow else both,
             self.aspect,
@@ -180,7 +182,7 @@ class PolesView(PlotlyView):
             selected=found.selected,
             locus=found.display.locus,
             limits={} if slow else limits_of(found.run.scenario.requirement),
-            block="azimuth" if slow else "network",
+            block=block,
         )
         plot["layout"]["meta"] |= self._handle.meta(found)
         return plot
@@ -190,6 +192,11 @@ def _offered(method: Method, block: Block) -> dict[str, str]:
     """Choices of the locus: label -> field."""
     fields = {} if method.undamped else locus_fields(getattr(method, block))
     return {_NONE: NO_LOCUS} | {label: name for name, label in fields.items()}
+
+
+def _block_of(display: Display) -> Block:
+    """Which network's pair the map shows."""
+    return "azimuth" if display.poles == "azimuth" else "network"
 
 
 def _system(display: Display) -> str:

@@ -1,10 +1,11 @@
 """The table of verdicts: what each requirement asks, what each method measures, and whether it is met."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
+from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of
 from schuler_bench.jobs.judge import Odds
 from schuler_bench.plots import style
 from schuler_bench.plots.limits import SIGNS
@@ -22,6 +23,7 @@ def requirements_html(
     pins: Sequence[Pinned] = (),
     methods: Sequence[int] | None = None,
     odds: Sequence[Odds | None] = (),
+    boxes: Mapping[str, int] | None = None,
 ) -> str:
     """Return a row a requirement and a column a method: measured value, and whether it meets the limit.
 
@@ -35,6 +37,8 @@ def requirements_html(
         Places of the columns to show, the run's methods first; all when None.
     odds : sequence of Odds or None
         Of each method of the run: how often its seeds meet the limits.
+    boxes : mapping, optional
+        The limits stand in boxes, each row at its place: how often the text of each box has been refused.
     """
     judged = together(run, pins)
     shown = range(len(judged.methods)) if methods is None else methods
@@ -56,18 +60,51 @@ def requirements_html(
             *(cell(_overall(judged_all, i) + odds_html(_of(odds, i)), "sb-n") for i in shown),
         ],
     )
+    places, more, look = list(range(len(judged_all))), [], ""
+    if boxes is not None:
+        places.sort(key=lambda place: BOXES.index(judged_all[place].quantity.key))
+        limited = any(one.from_h for one in run.scenario.requirement)
+        begins = [cell(FROM), cell(_box("from", FROM, from_text(run.scenario), boxes), "sb-n")]
+        button = cell(Text("add a limit"), "sb-do", tag="button", aria_expanded="false")
+        more = [row(begins, "" if limited else "sb-unasked"), row([cell(button)], "sb-unfold")]
+        look = "" if asked else "sb-nothing"
     rows = (
-        _row(verdict, shown, [odds_html(_of(odds, i), place) for i in shown], asked=asked)
-        for place, verdict in enumerate(judged_all)
+        _row(
+            judged_all[place],
+            shown,
+            [odds_html(_of(odds, i), place) for i in shown],
+            asked=asked,
+            boxes=boxes,
+        )
+        for place in places
     )
-    return table([head], [*rows, foot])
+    return table([head], [*rows, *more, foot], look)
+
+
+def _box(key: str, label: str, text: str, refused: Mapping[str, int]) -> str:
+    """Box of a limit; its HTML changes when a text is refused, so that the page shows this one again."""
+    return Text(
+        '<input class="sb-limit" inputmode="decimal" data-limit="{key}" data-refused="{times}" '
+        'value="{text}" aria-label="{label:html}">',
+        key=key,
+        times=refused.get(key, 0),
+        text=text,
+        label=label,
+    )
 
 
 def _of(odds: Sequence[Odds | None], index: int) -> Odds | None:
     return odds[index] if index < len(odds) else None
 
 
-def _row(verdict: Verdict, shown: Sequence[int], beside: Sequence[str], *, asked: bool) -> str:
+def _row(
+    verdict: Verdict,
+    shown: Sequence[int],
+    beside: Sequence[str],
+    *,
+    asked: bool,
+    boxes: Mapping[str, int] | None,
+) -> str:
     quantity, one = verdict.quantity, verdict.requirement
     unit = (
         Text(' <span class="sb-muted">({shown:html})</span>', shown=quantity.shown) if quantity.shown else ""
@@ -77,6 +114,10 @@ def _row(verdict: Verdict, shown: Sequence[int], beside: Sequence[str], *, asked
         if verdict.limit is None
         else f"{SIGNS[quantity.sense]} {number(verdict.limit, _DIGITS)}"
     )
+    if boxes is not None:
+        text = "" if verdict.limit is None else f"{verdict.limit:.6g}"
+        box = _box(quantity.key, label_of(quantity.key), text, boxes)
+        limit = Text("{sign} {box}", sign=SIGNS[quantity.sense], box=box)
     cells = (
         cell(
             Text(
@@ -98,7 +139,8 @@ def _row(verdict: Verdict, shown: Sequence[int], beside: Sequence[str], *, asked
     if one is not None and one.from_h and quantity.kind is not None:
         name = Text("{name}, from {hours:g} h", name=name, hours=one.from_h)
     named = cell(name)
-    return row([named, cell(limit, "sb-n"), *cells], title=quantity.help)
+    look = "sb-unasked" if boxes is not None and verdict.limit is None else ""
+    return row([named, cell(limit, "sb-n"), *cells], look, title=quantity.help)
 
 
 def _number(value: float) -> str:

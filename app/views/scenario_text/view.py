@@ -10,7 +10,8 @@ class ScenarioTextView(PictureView[str]):
     """The text alone."""
 
     title = Text("Scenario")
-    place = "lower"
+    place = "upper"
+    group = "more"
     look_for = Text("The scenario as a file: what the command line and a colleague need to repeat this run.")
 
     def build(self, tab: Tab) -> None:

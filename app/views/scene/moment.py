@@ -134,7 +134,7 @@ def pendulum_svg(now: Pendulum) -> str:
         height=HEIGHT,
         caption=caption,
         factor=now.factor,
-        font=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        font=style.SVG_FONT,
         parts=Text.joined("", parts),
     )
 

@@ -6,6 +6,9 @@
   const AFTER_SCRUB_MS = 500;
   const HEARD_MS = 250;
   const CHOICE_MS = 2000;
+  const HEAD_PX = 104; // top bar and strip of results
+  const NARROW_PX = 60; // narrower it is a rail
+  const LOW_PX = 800; // lower, and small, it has room for one instrument
   const WITHOUT = {
     missing: "No 3D view: this browser has no WebGL. Controls, plots and tables work.",
     lost: "The 3D view is lost: the browser has taken its WebGL away. Controls, plots and tables work. Load the page again to get it back.",
@@ -42,6 +45,8 @@
         <div class="sb-shown" role="group" aria-label="instruments">
           <button type="button" data-shows="pendulum" title="Schuler pendulum: tilt of every method's platform">pendulum</button>
           <button type="button" data-shows="readout" title="true and computed attitude and speed">readout</button>
+          <button type="button" data-mode="view" aria-label="large 3D view" title="3D view and plots change places">⇄</button>
+          <button type="button" data-mode="rail" aria-label="fold the 3D view" title="fold the 3D view to a rail">⇤</button>
         </div>
         <div class="sb-meters"><div class="sb-pendulum" data-is="pendulum"></div><div class="sb-readout" data-is="readout"></div></div>
       </div>
@@ -67,9 +72,12 @@
     find("loop").addEventListener("click", () => window.schuler.command("loop", now.loop ? "off" : "on"));
     // After a click by the mouse the space bar plays; whoever goes by the keyboard keeps the focus.
     stage.addEventListener("click", (event) => event.detail > 0 && event.target.closest("button")?.blur());
+    for (const button of stage.querySelectorAll("[data-mode]")) {
+      button.addEventListener("click", () => window.schuler.setMode(button.dataset.mode)); // columns.js
+    }
     for (const button of stage.querySelectorAll("[data-shows]")) {
       button.addEventListener("click", () => reveal(button, button.getAttribute("aria-pressed") !== "true"));
-      reveal(button, innerHeight >= (button.dataset.shows === "pendulum" ? 560 : 900));
+      reveal(button, innerHeight - HEAD_PX >= (button.dataset.shows === "pendulum" ? 500 : 900));
     }
     stage.classList.toggle("sb-alone", now.cameras.includes(wanted));
   }
@@ -83,7 +91,7 @@
 
   // A small view has room for one of them.
   function reveal(button, shown) {
-    if (shown && stage.classList.contains("sb-small")) {
+    if (shown && stage.classList.contains("sb-one")) {
       for (const other of stage.querySelectorAll("[data-shows]")) if (other !== button) reveal(other, false);
     }
     button.setAttribute("aria-pressed", String(shown));
@@ -116,6 +124,7 @@
     const words = without !== undefined ? [without] : [now.caption, ...(soft ? ["; 3D drawn in software"] : [])];
     write(find("caption"), words.map(window.schuler.say).join(""));
     const box = find("key");
+    if (!stage.classList.contains("sb-alone")) return; // the strip of results is the legend
     const names = now.key.map((each) => each.key).join("\n");
     if (box.dataset.names !== names) {
       box.dataset.names = names;
@@ -181,7 +190,9 @@
   function place() {
     const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
     const box = canvas?.getBoundingClientRect();
-    if (!box || box.width < 40) return;
+    if (!box || box.width < 10) return;
+    stage.classList.toggle("sb-rail", box.width < NARROW_PX);
+    for (const button of stage.querySelectorAll("[data-mode]")) set(button, "aria-pressed", String(button.dataset.mode === window.schuler.mode?.()));
     // alone.js lets it fill the window: viser's own frame of the canvas, of which the canvas takes its size.
     canvas.parentElement.parentElement.dataset.sbViews = now.cameras.join(" ");
     const [left, width] = [box.left, box.width].map(Math.round);
@@ -191,10 +202,12 @@
     stage.style.height = `${Math.round(box.height)}px`;
     const scale = Number(document.getElementById("sb-size")?.dataset.scale ?? 1);
     const small = box.width < 480 * scale;
-    if (small === stage.classList.contains("sb-small")) return;
+    const one = small && box.height < LOW_PX * scale;
     stage.classList.toggle("sb-small", small);
+    if (one === stage.classList.contains("sb-one")) return;
+    stage.classList.toggle("sb-one", one);
     const shown = stage.querySelectorAll('[data-shows][aria-pressed="true"]');
-    if (small && shown.length > 1) reveal(shown[0], true);
+    if (one && shown.length > 1) reveal(shown[0], true);
   }
 
   // The server slows the playback down when it hears nothing, and it hears nothing while the user moves something.

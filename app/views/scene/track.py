@@ -44,7 +44,7 @@ _FILL = 0.9
 _CUT = 3.0
 _DASH = 0.16
 _LIFT = 0.02
-_SCALES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+_SCALES = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.5)
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from navcore.foundation.text import Text
 from schuler_bench.plots import legend
 from schuler_bench.session.display import Display
 from schuler_bench.session.shown import Shown
-from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.scene.drawer import SceneDrawer
 from schuler_bench.views.scene.moment import caption_of, moment, pendulum, pendulum_svg, readout_html
 from schuler_bench.views.scene.playback import SPEEDS, Playback, PlayState
@@ -199,16 +199,14 @@ def bar_html(
     )
 
 
-_FIT = Text("as needed")
 # What stands over the view (playback.css, playback.js), px.
-_PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 285, 560, 900
+_PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 330, 500, 900
 _BAR_PX, _BAR_TEXT_PX = {False: 88, True: 122}, 305
 """Height of the bar in two rows and in three, and width of the view from which two hold it."""
 _MARGIN_PX, _CAPTION_PX, _CAPTION_TEXT_PX, _KEY_ROW_PX, _KEY_ROWS = 8, 22, 400, 22, 5
 _SMALL_PX = 480
 _MAP_SHARE, _LABEL_PX = 0.8, 62
 """Part of the view's width that the map's southern edge takes; width of a longitude with some room."""
-_FACTORS: tuple[str, ...] = (_FIT, *"1 2 5 10 20 50 100 200 500 1000 2000 5000".split())
 
 
 class SceneView(View):
@@ -231,16 +229,10 @@ class SceneView(View):
         self.playback = Playback(self._show)
 
     def build(self, tab: Tab) -> None:
-        """Make the chooser of the exaggeration, and what the bar over the view reads."""
+        """Make what the bar over the view reads."""
         gui = self.frame.gui
         with tab:
-            self._factor = gui.add_dropdown(
-                Text("enlarge errors in 3D"), _FACTORS, order=18,
-                hint=Text("Factor by which the 3D view enlarges the position errors; as needed: chosen so "
-                "that they show."),
-            )  # fmt: skip
             self._bar = gui.add_html("", order=3)
-        self._factor.on_update(if_user(self._enlarge))
         add, playback = self.frame.commands.register, self.playback
         add("shown", _number(lambda count: playback.heard(self._count - int(count))), watcher=True)
         add("play", lambda _: playback.toggle(), Text("Play or pause"), Text("Space"), watcher=True)
@@ -250,16 +242,6 @@ class SceneView(View):
         for camera in CAMERAS:
             title = Text("3D view: {camera}", camera=camera)
             add(f"camera-{camera}", lambda _, camera=camera: self._look(camera), title, watcher=True)
-
-    def _enlarge(self) -> None:
-        factor = self._factor.value
-        self.frame.show(exaggeration=None if factor == _FIT else float(factor))
-
-    def follow_display(self) -> None:
-        """Show the chosen factor."""
-        factor = self.session.display.exaggeration
-        self._factor.value = _FIT if factor is None else f"{factor:g}"
-        self._factor.visible = self.session.display.size == "normal"
 
     def follow_scenario(self) -> None:
         """Show the computed ship and the readout of the method that is edited now."""

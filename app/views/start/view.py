@@ -12,9 +12,6 @@ from schuler_bench.views.start.cards import card, network_cards
 
 START, TOUR, SCENARIOS, NETWORK_CARDS = "start", "tour", "scenarios", "networks"
 """Commands that show the card, the tour, and the two galleries."""
-_ORDER = 14.5
-"""Place in the left column: above the chooser of the scenario's text."""
-
 _DOORS = (
     (
         "door-swing",
@@ -63,11 +60,11 @@ _STEPS: tuple[dict[str, str], ...] = (
     },
     {
         "tab": Text("Errors"),
-        "find": ".sb-legend",
-        "title": Text("Errors over time"),
+        "find": "#sb-strip",
+        "title": Text("Results and errors"),
         "text": Text(
-            "One colour a method, in every picture. A click on a name leaves it out of the scale, dims "
-            "or hides it."
+            "A card a method, with its colour in every picture. A click lets the controls edit it; one on "
+            "its dot leaves it out of the scale, dims or hides it."
         ),
     },
     {
@@ -92,7 +89,7 @@ _STEPS: tuple[dict[str, str], ...] = (
 
 
 class StartView(View):
-    """Row of links below the scenario, and what they show."""
+    """Menu of the top bar, and what it shows."""
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
@@ -115,11 +112,12 @@ class StartView(View):
         add("door-files", lambda _: ask("tab", Text("Files")))
 
     def build(self, tab: Tab) -> None:
-        """Make the row of links, and what start.js reads."""
+        """Make the menu of the top bar, and what start.js reads."""
         gui, session = self.frame.gui, self.session
         fresh = not session.restored and session.run is None
+        with self.frame.bar:
+            gui.add_html(_MENU, order=50)
         with tab:
-            gui.add_html(_LINKS, order=_ORDER)
             doors = Text.joined(
                 "",
                 (
@@ -231,13 +229,18 @@ def _scenarios_html() -> str:
     return Text("<p>{about}</p><div class='sb-cards'>{cards}</div>", about=about, cards=cards)
 
 
-_LINKS = Text(
-    '<nav class="sb-links" aria-label="Help"><button data-command="{scenarios}" title="All '
+_MENU = Text(
+    '<div data-sb-part="menu"><button class="sb-do sb-gear" popovertarget="sb-menu" aria-label="Menu" '
+    'title="Scenarios, help, settings">☰</button><nav id="sb-menu" class="sb-links" popover '
+    'aria-label="Help"><button data-command="{scenarios}" title="All '
     'scenarios with pictures">Scenarios</button><button data-command="{network_cards}" '
     'title="All networks: |H| and trade">Networks</button><button data-command="{tour}" '
     'title="The page in six steps">Tour</button><button data-command="tab Learn" '
     'title="Lessons of five minutes">Learn</button><button data-command="{start}" title="The '
-    'card that a new visitor sees">Start</button></nav>',
+    'card that a new visitor sees">Start</button><hr><button data-command="tab View" '
+    'title="Units, bands, export, language, dark page, size">View</button><button data-command="keys" '
+    'title="What the keys do">Keys</button><button data-viewer title="Of the 3D view itself; again '
+    'to go back">3D settings</button></nav></div>',
     scenarios=SCENARIOS,
     network_cards=NETWORK_CARDS,
     tour=TOUR,

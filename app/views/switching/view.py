@@ -7,6 +7,7 @@ from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from schuler_bench.plots.uplot import UplotFigure, stack_heights
 from schuler_bench.session.shown import Shown
+from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.stack import Stack, room_px
 from schuler_bench.shell.view import Figures, Frame, PictureView, Tab, if_user
 from schuler_bench.views.errors.view import error_curves
@@ -40,6 +41,7 @@ class SwitchingView(PictureView[Switching]):
 
     title = Text("Switching")
     place = "lower"
+    group = "run"
     look_for = Text("When each method damps, and what its measure says; look for jumps of the error above.")
     plots = (title,)
     always = False
@@ -57,6 +59,7 @@ class SwitchingView(PictureView[Switching]):
             self._above: Any = gui.add_dropdown(
                 Text("curve above"), ("",), order=0, hint=Text("Error curve over the states and thresholds.")
             )
+            gui.add_html(TOOLS, order=0)
             self._legend = gui.add_html("", order=1)
         self._above.on_update(if_user(self.frame.redraw))
 

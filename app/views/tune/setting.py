@@ -25,6 +25,7 @@ TUNE, STOP = Text("Tune"), Text("Stop tuning")
 ACCEPT, DISCARD, UNDO = Text("Accept the proposal"), Text("Discard"), Text("Undo the proposal")
 KEEP, BEYOND = Text("keep settling and growth bounded"), Text("search beyond the sliders")
 ALL = Text("all parameters")
+_CURVES = Text("Curves: what is tuned for over one parameter, the others as they are; dot: present setting.")
 
 
 class SettingPanel:
@@ -75,6 +76,7 @@ class SettingPanel:
         self._discard = gui.add_button(DISCARD, color="gray", visible=False)
         self._undo = gui.add_button(UNDO, visible=False, hint=Text("The method gets its earlier setting."))
         words = {QUANTITIES[name].label: name for name in OBJECTIVES}
+        self._vary.on_update(if_user(self.frame.redraw))
         self._objective.on_update(if_user(lambda: self.frame.show(objective=words[self._objective.value])))
         self._accept.on_click(if_user(self._take))
         self._discard.on_click(if_user(self._designer.discard))
@@ -111,6 +113,8 @@ class SettingPanel:
         said = notices.small(limits_told(scenario, display)) + left_out_html(
             scenario.method[self.session.selected]
         )
+        if self.idle and self._fields[ALL]:
+            said += notices.small(_CURVES)
         show_html(self._told, Text('<div class="sb-wide">{said}</div>', said=said) if chosen else "")
         show_html(
             self._found, Text('<div class="sb-wide">{html}</div>', html=html) if chosen and html else ""
@@ -133,27 +137,31 @@ class SettingPanel:
             self._vary.options = tuple(choices)
             self._vary.value = ALL
 
+    def task(self, scenario: Scenario, *, limited: bool = True) -> TuningTask | None:
+        """Task of what is chosen; None where no parameter acts."""
+        fields, display = self._fields.get(self._vary.value, ()), self.session.display
+        limits = requirements_as_text(scenario.requirement) if limited else ()
+        kept = limited and display.default_limits
+        whole = display.beyond_sliders
+        return TuningTask(scenario, display.objective, fields, limits, kept, whole) if fields else None
+
+    @property
+    def idle(self) -> bool:
+        """Whether there is no proposal, and none is looked for."""
+        return self._designer.result is None and self._designer.under_way is None
+
     def begin(self) -> None:
         """Search for the best setting of the selected method."""
         session = self.session
         with session.lock:
-            scenario, display = session.scenario, session.display
-            fields = self._fields.get(self._vary.value, ())
-        if not fields:
+            scenario = session.scenario
+            task = self.task(scenario)
+        if task is None:
             reason = network_not_in_force(scenario.method[session.selected])
             lines = [reason or Text("The network of this method has no parameter to vary.")]
             notices.tell(self.frame.client, Text("Nothing to tune"), lines)
             return
-        self._designer.begin(
-            TuningTask(
-                scenario,
-                display.objective,
-                fields,
-                requirements_as_text(scenario.requirement),
-                display.default_limits,
-                display.beyond_sliders,
-            )
-        )
+        self._designer.begin(task)
 
     def _take(self) -> None:
         """Put the proposal into the present scenario."""

@@ -12,6 +12,7 @@ from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import Figures, Frame, if_user
 from schuler_bench.views.tune.finder import FrontsPanel
 from schuler_bench.views.tune.fronts import fronts_figure
+from schuler_bench.views.tune.profiles import profiles_figure
 from schuler_bench.views.tune.setting import SettingPanel
 
 SEARCH_FOR = Text("search for")
@@ -24,6 +25,7 @@ class TuneView(PlotlyView):
 
     title = Text("Tune")
     place = "lower"
+    group = "decide"
     look_for = Text("Let the program search the best setting; accept or discard what it proposes.")
     plots = (title,)
     above_px = 2 * CHOOSER_PX + _NOTE_PX
@@ -31,7 +33,10 @@ class TuneView(PlotlyView):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._setting, self._finder = SettingPanel(frame), FrontsPanel(frame)
+        self._profiles = frame.session.searches.profiles
         self._drawn: Pareto | None = None
+        self._drawn_profiles: object = None
+        self._idle = True
         frame.commands.register("tune", lambda _: self._setting.begin(), Text("Tune the selected method"))
 
     def build_tools(self) -> None:
@@ -54,8 +59,8 @@ class TuneView(PlotlyView):
 
     @property
     def of_selected(self) -> bool:
-        """The star is the selected method."""
-        return self._of_fronts
+        """The star, or the curves, are of the selected method."""
+        return True
 
     def follow_scenario(self) -> None:
         """Offer the fields of the selected method."""
@@ -70,12 +75,14 @@ class TuneView(PlotlyView):
         self._show()
 
     def take_new(self) -> bool:
-        """Whether fronts have just been found."""
-        fronts = self._finder.found
-        if fronts is self._drawn or not self._of_fronts:
-            return False
-        self._drawn = fronts
-        return True
+        """Whether fronts or curves have just been found, or a proposal takes the place of the curves."""
+        before = self._drawn, self._drawn_profiles, self._idle
+        if self._of_fronts:
+            self._drawn = self._finder.found
+        else:
+            self._drawn_profiles, self._idle = self._profiles.result, self._setting.idle
+        now = self._drawn, self._drawn_profiles, self._idle
+        return any(one is not other for one, other in zip(before, now, strict=True))
 
     def _show(self) -> None:
         chosen = next(label for label, name in SEARCHES.items() if name == self.session.display.search)
@@ -85,8 +92,10 @@ class TuneView(PlotlyView):
         self._finder.show(chosen=self._of_fronts)
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
-        """Pareto fronts, with the present design."""
+        """Pareto fronts, with the present design; or the objective over each parameter."""
         del both
+        if found.display.search != "fronts":
+            return self._curves(found)
         scenario, index, objectives = found.run.scenario, self._finder.method, self._finder.objectives
         return fronts_figure(
             self._finder.found,
@@ -99,9 +108,21 @@ class TuneView(PlotlyView):
             growth=found.run.methods[min(index, len(found.run.methods) - 1)].growth_per_s,
         )
 
+    def _curves(self, found: Shown) -> PlotlyFigure:
+        scenario, index = found.run.scenario, found.selected
+        task = self._setting.task(scenario, limited=False) if self._setting.idle else None
+        if task is None or task.method != index:
+            return PlotlyFigure()
+        self._profiles.follow(task)
+        known = self._profiles.beside(task)
+        if not known:
+            return PlotlyFigure()
+        return profiles_figure(known, task.objective, scenario.method[index], index, self.aspect)
+
     def picture(self, found: Shown) -> PlotlyFigure:
-        """Make the fronts; a figure without anything while the best setting is searched for."""
-        return super().picture(found) if found.display.search == "fronts" else PlotlyFigure()
+        """Make the picture; a figure without anything while there are no curves, or a proposal."""
+        fronts = found.display.search == "fronts"
+        return super().picture(found) if fronts or self._curves(found) else PlotlyFigure()
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the fronts, to be saved; raises LookupError while none have been found."""

@@ -1,16 +1,17 @@
-"""Above the tabs: verify the scenario with the full strapdown, progress, stop, and what came out."""
+"""In the top bar: verify the scenario with the full strapdown, progress, stop, and what came out."""
 
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs.verifier import Verifier
 from schuler_bench.shell import notices
+from schuler_bench.shell.header import WARNINGS
 from schuler_bench.shell.searching import reveal, show_html
 from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.metrics.table import verdict
 
 VERIFY, STOP = Text("Verify with full strapdown"), Text("Stop verifying")
-_ORDER = 13.5
-"""Place in the left column: below the state of the run."""
+_ORDER = 35.0
+"""Place in the top bar: before the buttons that share."""
 _TOLD = Text(
     "Runs the scenario as full nonlinear strapdown, and the linear model on the same noise. The run's own "
     'curves stay. The tab Errors draws both models and their difference (curves "Verification"), and the tab '
@@ -29,12 +30,12 @@ class VerificationView(View):
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
         gui = self.frame.gui
-        with tab:
-            # A small one, as those at the top: it is not the first thing to press.
+        with self.frame.bar:
+            # A small one, as those beside it: it is not the first thing to press.
             self._start = gui.add_html(
                 Text(
-                    '<div class="sb-row"><button class="sb-do" data-command="verify" title="{told:html}">'
-                    "{verify}</button></div>",
+                    '<div class="sb-row" data-sb-part="row"><button class="sb-do" data-command="verify" '
+                    'title="{told:html}" aria-label="{verify}">Verify</button></div>',
                     told=_TOLD,
                     verify=VERIFY,
                 ),
@@ -42,7 +43,8 @@ class VerificationView(View):
             )
             self._progress = gui.add_progress_bar(0.0, visible=False, order=_ORDER + 0.1)
             self._stop = gui.add_button(STOP, color="orange", visible=False, order=_ORDER + 0.2)
-            self._verdict = gui.add_html("", visible=False, order=_ORDER + 0.3)
+        with tab:
+            self._verdict = gui.add_html("", visible=False, order=WARNINGS + 1)
         self._stop.on_click(lambda _: self.session.verifier.cancel())
 
     def _verify(self) -> None:

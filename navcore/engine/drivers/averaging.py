@@ -30,7 +30,7 @@ def averaged_linear(
     InputError
         The vehicle moves at t = 0, or hardly ever stands still during the alignment.
     """
-    plan = _plan(scenario, method, env.truth_half.values[0])
+    plan = plan_of(scenario, method, env.truth_half.values[0])
     run = scenario.run
     law = law_of(method, network_of(scenario, method), run.step_s)
     averaged = start_error_model(
@@ -60,7 +60,7 @@ def averaged_strapdown(
     # Only now: the strapdown kernels are slow to import, and most runs are linear.
     from navcore.averaging.strapdown import start_strapdown
 
-    plan = _plan(scenario, method, env.truth.values[0])
+    plan = plan_of(scenario, method, env.truth.values[0])
     network = network_of(scenario, method)
 
     def law(interval_s: float) -> Law:
@@ -72,7 +72,14 @@ def averaged_strapdown(
     return averaged, plan.notices
 
 
-def _plan(scenario: Scenario, method: Method, true_row: np.ndarray) -> Plan:
+def plan_of(scenario: Scenario, method: Method, true_row: np.ndarray) -> Plan:
+    """Copies and forecast of an averaging method, from the true state at t = 0, shape (15,).
+
+    Raises
+    ------
+    InputError
+        The vehicle moves at t = 0, or hardly ever stands still during the alignment.
+    """
     alignment = scenario.alignment
     return prepare_averaging(
         method.settings,

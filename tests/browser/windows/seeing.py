@@ -21,7 +21,7 @@ SYMBOLS = frozenset(
     "Schuler Bench CSV SVG PNG TOML JSON HTML NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
     "log linear exact Deng Liu Zhao Sun Zha Sikuliaq fig eq theory md RMS GPS LQG IMU WGS ENE ESE SSE SSW "
     "WSW WNW NNW NNE Ctrl Shift Enter Esc English Viser WorldAxes light map metrics scenario toml json "
-    "page state painted command serve host mas rms and pole2 imu reference".split()
+    "page state painted command serve host mas rms and pole2 imu reference npz".split()
 )
 """Product, formats, symbols, units, keys, citations, the scene's nodes, the page's own hidden controls."""
 

@@ -161,38 +161,38 @@ def test_a_click_on_the_legend_dims_hides_and_leaves_out(window: Bench) -> None:
     names = [method.method.name for method in run.methods]
     peaks = [method.errors["position_m"]["max_abs"] for method in run.methods]
     place = peaks.index(max(peaks))
-    entries = page.locator("#sb-stage .sb-entry")
-    page.wait_for_function("() => document.querySelectorAll('#sb-stage .sb-entry').length === 3")
-    assert [text.split("\n")[0] for text in entries.all_inner_texts()] == names
+    cards = page.locator("#sb-strip .sb-result")
+    assert cards.locator("b").all_inner_texts() == names
     top = f"""() => Object.values(window.__viserTestpoints.uplots).map(e => e.chart)
       .filter(c => c.axes[1].label.startsWith({window.said("position")!r}))
       .map(c => [c.scales.y.max, c.series[{1 + place}].show])[0]"""
     drawn = page.evaluate(top)[0]
     for state in ("unscaled", "dimmed", "hidden"):
-        see(window, page.locator(".sb-legend .sb-entry", has_text=names[place])).click()
-        page.wait_for_selector(f".sb-legend .sb-entry[data-state={state}]")
+        see(window, cards.nth(place).locator(".sb-tint")).click()
+        page.wait_for_selector(f".sb-result[data-state={state}]")
         window.catch_up()
         assert window.session.display.state_of(names[place]) == state
-        assert names[place] in read(window, page.locator(f"#sb-stage .sb-entry[data-state={state}]"))
+        assert names[place] in read(window, page.locator(f".sb-result[data-state={state}]"))
         scale = "===" if state == "dimmed" else "<"
         condition = f"{scale} top && show === (state !== 'hidden')"
         page.wait_for_function(
             f"([top, state]) => (([now, show]) => now {condition})(({top})() ?? [])", arg=[drawn, state]
         )
     assert window.line(f"/track/method{place}") is None and window.line(f"/track/method{place - 1}")
-    # a click on the key of the map does the same: once more, and it is shown again
-    entries.nth(place).click()
+    cards.nth(place).locator(".sb-tint").click()  # once more, and it is shown again
     window.wait_until(lambda: window.line(f"/track/method{place}") is not None)
 
 
 def test_copies_have_names_of_their_own(window: Bench) -> None:
     for _ in range(3):
         with window.next_run():
-            see(window, window.button("copy")).click()
+            see(window, window.menu("copy")).click()
     names = [method.name for method in window.session.scenario.method]
     assert names[2:] == ["complementary", "complementary 2", "complementary 3", "complementary 4"]
     for name in names:
-        see(window, window.page.locator(".sb-legend .sb-entry", has_text=re.compile(f"^{name}")))
+        card = window.page.locator(".sb-result", has_text=re.compile(f"^{name}"))
+        card.first.scroll_into_view_if_needed()
+        see(window, card)
 
 
 def test_the_table_of_metrics_is_whole_rounded_aligned_and_marks_the_best(window: Bench) -> None:
@@ -213,10 +213,14 @@ def test_the_table_of_metrics_is_whole_rounded_aligned_and_marks_the_best(window
 
 
 def test_the_page_speaks_in_plain_words(window: Bench) -> None:
-    for label in ("scenario", "method", "enlarge errors in 3D"):
+    for tab, label in (("Method", "network"), ("View", "enlarge errors in 3D")):
+        window.tab(tab)
         see(window, window.box(label))
         assert read(window, window.page.locator(f"label[for='{window.id(label)}']")) == window.said(label)
+    see(window, window.box("scenario"))
+    see(window, window.button("About the scenario")).click()
     read(window, window.page.locator("#sb-focus"))
+    window.page.keyboard.press("Escape")
 
 
 def test_the_key_stands_below_the_map_which_fills_its_view(window: Bench) -> None:
@@ -238,8 +242,6 @@ def test_the_key_stands_below_the_map_which_fills_its_view(window: Bench) -> Non
     assert shown[".sb-bar"][3] - shown[".sb-bar"][1] < 110
     pressed = page.locator("#sb-stage [data-shows][aria-pressed=true]").count()
     assert pressed == (2 if window.size == SIZES[0] else 1), "a small view has room for one instrument"
-    for number in range(3):
-        read(window, page.locator("#sb-stage .sb-entry").nth(number))
     across, up = page.evaluate("look.viewFilled")
     assert max(across, up) > 0.45, "the map is as large as the room between instruments and key"
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import Locator
 
 from navcore.analysis import analyse
 from navcore.foundation.text import Text
@@ -165,10 +166,10 @@ def test_a_unit_is_typed(window: Bench, text: str, hours: float | None) -> None:
     window.settle()
 
 
-def copied(window: Bench) -> str:
-    """What the button of the tab in front copies."""
+def copied(window: Bench, button: Locator) -> str:
+    """What a button copies."""
     dialog = window.page.locator("dialog.sb-dialog")
-    see(window, window.button("copy as TOML")).click()
+    see(window, button).click()
     text = see(window, dialog.locator("textarea")).input_value()
     speaks(window, dialog.locator("h2").inner_text())
     see(window, dialog.get_by_role("button", name=window.said("Close"))).click()
@@ -179,14 +180,14 @@ def copied(window: Bench) -> str:
 def test_a_method_is_copied_and_pasted(window: Bench) -> None:
     page, session = window.page, window.session
     names, dialog = [method.name for method in session.scenario.method], page.locator("dialog.sb-dialog")
-    text = copied(window)
+    text = copied(window, window.menu("copy as TOML"))
     assert text.startswith("[[method]]") and 'id = "complementary"' in text
     with window.next_run():
         page.evaluate("look.pasted", text)  # anywhere on the page
     *pasted, added = session.scenario.method
     assert [method.name for method in pasted] == names and added.name not in names
     assert added.network == session.scenario.method[2].network and session.selected == 3
-    see(window, window.button("paste TOML")).click()
+    see(window, window.menu("paste TOML")).click()
     see(window, dialog.locator("textarea")).fill(text.replace("zeta = ", "zeta = -"))
     see(window, dialog.get_by_role("button", name=window.said("Paste"))).click()
     assert "method.4.network.zeta" in window.notice("That did not work")
@@ -205,4 +206,4 @@ def test_a_list_of_log_events_is_pasted(window: Bench) -> None:
     parts = Text("{name} {i}", name="event", i=2), "begins", Text("({sign})", sign="h")
     begins = Text.joined(" ", parts) + EXACT
     assert see(window, window.box(begins)).input_value() == "2.5"
-    assert "t_h = 2.5" in copied(window)
+    assert "t_h = 2.5" in copied(window, window.button("copy as TOML"))

@@ -23,15 +23,14 @@ from tests.recordings import OWN
 
 
 def box(bench: Bench, label: str) -> Any:
-    return (
-        bench.page.get_by_text(bench.said(label), exact=True)
-        .locator("xpath=ancestor::div[2]")
-        .locator("input")
-    )
+    return bench.page.get_by_label(bench.said(label), exact=True)
 
 
 def ask(bench: Bench, label: str, text: str) -> None:
+    if not box(bench, label).is_visible():
+        bench.page.locator(".sb-unfold button").click()
     box(bench, label).fill(text)
+    box(bench, label).press("Enter")
     bench.settle()
 
 

@@ -12,7 +12,7 @@ import viser
 import schuler_bench.shell
 from navcore.scenario.model import Scenario
 from schuler_bench.http.server import start
-from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.shell.layout import layout_for
 from schuler_bench.views import load
 from tests.browser.driver import Bench
 from tests.browser.patience import THROTTLE_MS
@@ -134,8 +134,7 @@ def test_a_lost_server_is_told(visitor: Bench, lost: Callable[[], None]) -> None
 
 
 def test_an_address_opens_tabs_and_one_view_alone(window: Bench, visitor: Bench) -> None:
-    wide = window.page.viewport_size["width"] >= WIDE_FROM_PX
-    tabs = ["Sensors", *(["Frequency"] if wide else []), "Spectrum"]
+    tabs = ["Sensors", *(["Frequency"] if layout_for(*window.size).two else []), "Spectrum"]
     window.tab(*tabs)
     window.page.evaluate("() => schuler.command('share-view')")
     link = see(window, window.dialog("Share this state").get_by_role("textbox")).input_value()
@@ -174,7 +173,8 @@ def test_presentation_size_is_large_folded_and_whole(window: Bench) -> None:
         smallest, text = next(found for found in page.evaluate("look.type") if found[1] != "?")
         assert smallest >= height / ROWS, (tab, text)
         assert page.evaluate("look.textOutside") == [], tab
-    hidden = {"scenario", "methods", "as text", "duration (h)", "enlarge errors in 3D"}
+    hidden = {"scenario", "duration (h)", "enlarge errors in 3D"}
+    assert page.locator(".sb-chip").count() == 3 and page.locator(".sb-menu, .sb-plus").count() == 0
     assert not hidden & set(page.evaluate("look.shownLabels"))
     for folded in ("[data-dock-region=left] [role=tablist]", "[data-command=undo]"):
         assert page.locator(folded).is_hidden()

@@ -1,0 +1,163 @@
+"""Strip of results below the top bar: a card a method; the legend of all pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from navcore.engine.measures import measure
+from navcore.engine.run import ENDINGS, MethodRun, Run
+from navcore.foundation.notation import with_unit
+from navcore.foundation.text import Text
+from navcore.quantities import QUANTITIES
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import COMMAND, hint, word
+from schuler_bench.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, wanted_unit
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import asked
+from schuler_bench.session.shown import Shown, window_of
+from schuler_bench.shell.view import Frame, Tab, View
+
+EDIT = "edit-method"
+"""Name of the command of a card, with the place of its method."""
+_SETTLING = "settling_s"
+_SHOWN = {
+    "tilt_max_arcsec": (Text("tilt"), "angle", angle_unit),
+    "velocity_rms_mps": (Text("velocity"), "speed", speed_unit),
+    "position_max_m": (Text("position"), "length", length_unit),
+    _SETTLING: (Text("settles"), "", None),
+}
+"""Quantity -> its short name, and the choice of the display and the function that give its unit."""
+
+
+class StripView(View):
+    """Cards of the methods of the run that is shown; a click lets the controls edit the method."""
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._found: Shown | None = None
+        frame.commands.register(EDIT, self._edit)
+
+    def build(self, tab: Tab) -> None:
+        """Make the place of the strip."""
+        with tab:
+            self._cards = self.frame.gui.add_html(strip_html(None, 0), order=5)
+
+    def _edit(self, place: str) -> None:
+        """Let the controls edit a method."""
+        if place.isascii() and place.isdecimal() and int(place) < len(self.session.scenario.method):
+            self.session.select(int(place), None)
+            self.frame.commands.ask_page("front", Text("Method"))
+
+    def follow_scenario(self) -> None:
+        """Mark the card of the method that is edited now."""
+        html = strip_html(self._found, self.session.selected)
+        if self._cards.content != html:
+            self._cards.content = html
+
+    def draw(self, found: Shown) -> None:
+        """Show the results of a run."""
+        self._found = found
+        self.follow_scenario()
+
+
+def strip_html(found: Shown | None, selected: int) -> str:
+    """HTML of the strip.
+
+    Parameters
+    ----------
+    found : Shown or None
+        What the pictures show; None before the first run.
+    selected : int
+        Place of the edited method.
+    """
+    cards = "" if found is None else Text.joined("", _cards(found, selected))
+    return Text(
+        '<div id="sb-strip" role="group" aria-label="Results of the methods">{cards}</div>', cards=cards
+    )
+
+
+def _cards(found: Shown, selected: int) -> Iterator[str]:
+    run, display = found.run, found.display
+    part = window_of(run, display).run
+    limits = asked(run, run.scenario.requirement)
+    for place, method in enumerate(part.methods):
+        name, state = method.method.name, display.state_of(method.method.name)
+        numbers = [*_numbers(method, _before(found, name), display)]
+        if limits:
+            missed = [verdict.quantity.label for verdict in limits if not verdict.passed[place]]
+            numbers.append(_met(len(limits), missed))
+        ended = Text.joined(", ", [words for words in (ENDINGS.get(method.status, ""), word(state)) if words])
+        said = Text("<i>{words}</i>", words=ended) if ended else ""
+        yield Text(
+            '<div class="sb-result" data-state="{state}" data-edited="{pressed}" '
+            'style="--color:{color}"><button class="sb-tint" '
+            'data-command="{legend} {name:html}" title="{hint}" aria-label="{name:html}: {hint}"></button>'
+            '<button class="sb-edit" data-command="{edit} {place}" aria-pressed="{pressed}" '
+            'title="Edit {name:html}"><b>{name:html}</b>{said}{numbers}</button></div>',
+            state=state,
+            color=style.method_color(place),
+            legend=COMMAND,
+            hint=hint(state),
+            edit=EDIT,
+            place=place,
+            pressed="true" if place == selected else "false",
+            name=name,
+            said=said,
+            numbers=Text.joined("", numbers),
+        )
+
+
+def _before(found: Shown, name: str) -> MethodRun | None:
+    """Find the method of the same name in the pinned run with which this one is compared."""
+    pinned: Run | None = None if found.baseline is None else found.baseline.run
+    if pinned is None:
+        return None
+    methods = window_of(pinned, found.display).run.methods
+    return next((method for method in methods if method.method.name == name), None)
+
+
+def _numbers(method: MethodRun, before: MethodRun | None, display: Display) -> Iterator[str]:
+    """Each quantity with its unit, and by how many per cent it differs from the pinned run's."""
+    for key, (label, choice, suitable) in _SHOWN.items():
+        value = measure(method, key)
+        if suitable is None:
+            text = settling(value) if method.loop.stable else Text("unstable")
+        else:
+            unit = wanted_unit(getattr(display, choice), value, suitable)
+            text = with_unit(rounded(value / unit.si), unit.name)
+        change = _change(value, before, key)
+        title = QUANTITIES[key].label
+        if change:
+            title = Text("{label}; {change} since the pin", label=title, change=change)
+        yield _number(label, title, text, change)
+
+
+def _change(value: float, before: MethodRun | None, key: str) -> str:
+    old = math.nan if before is None else measure(before, key)
+    if not (math.isfinite(old) and math.isfinite(value) and old):
+        return ""
+    part = round(100.0 * (value - old) / abs(old))
+    return f"{part:+d} %" if part else ""
+
+
+def _met(count: int, missed: list[str]) -> str:
+    words, which = Text("{met} of {count}", met=count - len(missed), count=count), Text.joined(", ", missed)
+    told = Text("misses {which}", which=which) if missed else Text("meets all limits")
+    look = "sb-missed" if missed else "sb-met"
+    return _number(
+        Text("limits met"), told, Text('<span class="{look}">{words}</span>', look=look, words=words)
+    )
+
+
+def _number(label: str, title: str, text: str, change: str = "") -> str:
+    return Text(
+        '<span class="sb-fact" title="{title:html}"><small>{label}</small><span>{text}{change}</span></span>',
+        title=title,
+        label=label,
+        text=text,
+        change=change and f"<i>{change}</i>",
+    )
+
+
+VIEW = StripView

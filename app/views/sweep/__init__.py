@@ -1,0 +1,1 @@
+"""Tab "Sweep": a metric of all methods over latitude, log error, sensor grade and sea state."""

@@ -1,0 +1,149 @@
+"""Whether a speed log and a heading agree with the motion over ground: scale, sign, and clocks that lag.
+
+A log's scale cannot be told from a current while the ship keeps its course. When it turns, the current keeps
+its direction: scale and current come from least squares together.
+"""
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG
+from navcore.io.courses import SPEED_SLIPS, Way, under_way
+from navcore.io.plausible import slip_of
+from navcore.io.series import Recording
+
+LARGEST_SCALE_ERROR = 0.07
+"""Of a log whose scale is known well; units differ by 10 % and more."""
+SHORTEST_LAG_S = 12.0
+"""A ship's course follows its heading by several seconds; a clock that is off by less is not told."""
+_FEWEST = 60
+_MOST = 400
+_WIDEST_LAG_S = 3700.0
+_SHARE = 1.0 / 3.0
+"""Of the time that two streams share, by which they are shifted at most."""
+_SURE = 4.0
+_KNOWN = 0.05
+"""Share of a factor up to which it may be unsure; tides and a straight course leave it unsure by more."""
+_WORST_CONDITION = 30.0
+_ALIKE = 30
+"""Samples whose residuals are taken for one: currents and steering change slowly."""
+_BETTER = 0.5
+_LEAST_TURN = 2.0 * DEG
+_LEAST_SPEED_MPS = 0.15
+_WORDS = (Text("the speed through the water"), Text("the speed to starboard through the water"))
+
+
+def agreement_warnings(recording: Recording) -> list[str]:
+    """Say by which factor or time a log or a heading is off the motion over ground.
+
+    Parameters
+    ----------
+    recording : Recording
+        With heading and positions or velocity under way, of one file or joined of several.
+    """
+    way = under_way(recording)
+    if recording.heading is None or way is None or way.time_s.size < _FEWEST:
+        return []
+    heading_s, heading = recording.heading.time_s, np.unwrap(recording.heading.values[:, 0])
+    course = np.unwrap(np.arctan2(way.east, way.north))
+    words = _lagging(
+        Text("the heading"), lambda lag: _turning(heading_s, heading, way.time_s, course, lag), _LEAST_TURN,
+        min(heading_s[-1], way.time_s[-1]) - max(heading_s[0], way.time_s[0]),
+    )  # fmt: skip
+    return words or _of_log(recording, way, heading_s, heading)
+
+
+def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.ndarray) -> list[str]:
+    water = recording.water
+    if water is None:
+        return []
+    kept = np.flatnonzero(water.valid)
+    if kept.size < _FEWEST:
+        return []
+    time_s, speeds = water.time_s[kept], water.values[kept]
+    used = [1, 0] if np.abs(speeds[:, 0]).max() > 0.0 else [1]
+    begin, end = max(way.time_s[0], heading_s[0]), min(way.time_s[-1], heading_s[-1])
+
+    def fit(lag_s: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """Factors of the speeds, their deviations, and the rms of what is left, m/s."""
+        inside = np.flatnonzero((time_s - lag_s >= begin) & (time_s - lag_s <= end))
+        inside = inside[:: max(1, inside.size // _MOST)]
+        if inside.size < _FEWEST:
+            return np.ones(len(used)), np.full(len(used), np.inf), np.inf
+        at = time_s[inside] - lag_s
+        angle = np.interp(at, heading_s, heading)
+        sine, cosine, one, none = np.sin(angle), np.cos(angle), np.ones(at.size), np.zeros(at.size)
+        axes = {1: (sine, cosine), 0: (cosine, -sine)}
+        columns = [np.concatenate([speeds[inside, k] * part for part in axes[k]]) for k in used]
+        design = np.column_stack([*columns, np.concatenate([one, none]), np.concatenate([none, one])])
+        ground = np.concatenate([np.interp(at, way.time_s, way.east), np.interp(at, way.time_s, way.north)])
+        size = np.linalg.norm(design, axis=0)
+        if not size.all() or np.linalg.cond(design / size) > _WORST_CONDITION:
+            return np.ones(len(used)), np.full(len(used), np.inf), np.inf
+        found, _, _, _ = np.linalg.lstsq(design, ground, rcond=None)
+        left = float(np.std(ground - design @ found))
+        spread = left * np.sqrt(_ALIKE * np.diag(np.linalg.inv(design.T @ design)))
+        return found[: len(used)], spread[: len(used)], left
+
+    span_s = min(end, time_s[-1]) - max(begin, time_s[0])
+    if words := _lagging(_WORDS[0], lambda lag: fit(lag)[2], _LEAST_SPEED_MPS, span_s):
+        return words
+    factors, spread, _ = fit(0.0)
+    return list(_scales(factors, spread))
+
+
+def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[str]:
+    for what, factor, deviation in zip(_WORDS, factors, spread, strict=False):
+        known = deviation < _KNOWN * max(abs(factor), 1.0)
+        if not known or abs(factor - 1.0) <= max(LARGEST_SCALE_ERROR, _SURE * deviation):
+            continue
+        slip = Text("the wrong sign")
+        if factor > 0.0:
+            slip = slip_of(1.0 / factor, SPEED_SLIPS, LARGEST_SCALE_ERROR) or Text("a wrong unit or scale")
+        yield Text(
+            "{what} agrees with the motion over ground when it is multiplied by {factor:.3g} "
+            "± {deviation:.2g} (a steady current is taken off): {slip}?",
+            what=what,
+            factor=float(factor),
+            deviation=float(deviation),
+            slip=slip,
+        )
+
+
+def _turning(
+    heading_s: np.ndarray, heading: np.ndarray, time_s: np.ndarray, course: np.ndarray, lag_s: float
+) -> float:
+    """Deviation of heading minus course, rad, when the heading's times are ``lag_s`` too late."""
+    inside = np.flatnonzero((time_s + lag_s >= heading_s[0]) & (time_s + lag_s <= heading_s[-1]))
+    inside = inside[:: max(1, inside.size // _MOST)]
+    if inside.size < _FEWEST:
+        return np.inf
+    off = np.interp(time_s[inside] + lag_s, heading_s, heading) - course[inside]
+    middle = np.angle(np.mean(np.exp(1j * off)))
+    return float(np.sqrt(np.mean(((off - middle + np.pi) % (2.0 * np.pi) - np.pi) ** 2)))
+
+
+def _lagging(what: str, misfit: Callable[[float], float], least: float, span_s: float) -> list[str]:
+    """Tell the time by which a stream is late, if shifted by it the stream fits twice as well."""
+    now = misfit(0.0)
+    if not least < now < np.inf:
+        return []
+    reach = min(_WIDEST_LAG_S, _SHARE * span_s)
+    step = max(2.0, reach / 100.0)
+    lags = step * np.arange(-int(reach / step), int(reach / step) + 1)
+    sizes = np.array([misfit(float(lag)) for lag in lags])
+    best = int(np.argmin(sizes))
+    if abs(lags[best]) < SHORTEST_LAG_S or sizes[best] > _BETTER * now:
+        return []
+    near = lags[sizes <= sizes[best] + 0.1 * (now - sizes[best])]
+    return [
+        Text(
+            "{what} is {lag:+.0f} s (± {reach:.0f} s) late against the motion over ground: clocks of two "
+            "loggers? Shift its times",
+            what=what,
+            lag=float(lags[best]),
+            reach=0.5 * float(np.ptp(near)) + step,
+        )
+    ]

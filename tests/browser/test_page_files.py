@@ -1,0 +1,73 @@
+"""Recordings come in through the page: two NMEA files, and a CSV whose columns the user names."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from schuler_bench.session.session import Session
+from tests.browser.driver import Bench
+from tests.nmea import START, gga, rmc, stamped, write
+
+BEGIN_S = (datetime(2024, 5, 1, 10, tzinfo=UTC) - START).total_seconds()
+SPAN_S = 300
+
+
+def _track(folder: Path) -> list[Path]:
+    """Positions and heading of a ship that steams east at 10 kn, as two NMEA files."""
+    east_deg = 10.0 / 3600.0 / 60.0 / 0.669  # a second at 10 kn, 48 N
+    gps = (
+        stamped(BEGIN_S + k, body)
+        for k in range(SPAN_S)
+        for lon in [-123.0 + east_deg * k]
+        for body in (gga(BEGIN_S + k, 48.0, lon, 10.0), rmc(BEGIN_S + k, 48.0, lon, 10.0, 90.0))
+    )
+    gyro = (stamped(BEGIN_S + k, "HEHDT,90.0,T") for k in range(SPAN_S))
+    return [write(folder / "gps.nmea", gps), write(folder / "gyro.nmea", gyro)]
+
+
+def _log() -> bytes:
+    """A German logger's table in local time, the day first; the month would be possible too."""
+    rows = (f"01/05/2024 12:{k // 60:02d}:{k % 60:02d};{10.0 + 0.1 * (k % 3):.1f}" for k in range(SPAN_S))
+    return "\n".join(["wann;fahrt", *(row.replace(".", ",") for row in rows)]).encode()
+
+
+def test_two_nmea_files_and_a_csv_are_brought_to_a_run(
+    fresh: Bench, session: Session, tmp_path: Path, pictures: Path
+) -> None:
+    fresh.tab("Files")
+    for file in _track(tmp_path):
+        fresh.upload(file)
+        fresh.wait_until(lambda name=file.name: name in session.uploads.files)
+        fresh.notice(f"{file.name}: NMEA 0183 log")
+        fresh.close_notices()
+    fresh.upload({"name": "log.csv", "mimeType": "text/csv", "buffer": _log()})
+    assert "say what its columns mean" in fresh.notice("log.csv is kept")
+    fresh.close_notices()
+    fresh.page.screenshot(path=pictures / "refused.png")
+    fresh.choose("column", "wann")
+    fresh.choose("means", "time")
+    assert "does the day or the month come first?" in fresh.page.locator(".sb-note").last.inner_text()
+    fresh.page.screenshot(path=pictures / "asked.png")
+    fresh.choose("unit", "DD/MM/YYYY hh:mm:ss")
+    row = "xpath=ancestor::*[contains(@class, 'mantine-Flex-root')][1]//input"  # viser gives it no id
+    fresh.page.locator('label:text-is("time zone")').locator(row).fill("Europe/Berlin")
+    fresh.choose("column", "fahrt")
+    fresh.choose("means", "speed through water")
+    fresh.choose("unit", "kn")
+    fresh.page.screenshot(path=pictures / "named.png")
+    with fresh.next_run():
+        fresh.button("Read by these columns").click()
+    assert "The duration is the 300 s" in fresh.notice("all uploaded streams share")
+    fresh.page.screenshot(path=pictures / "run.png")
+    assert (session.scenario.motion.kind, session.scenario.reference.kind) == ("track", "file")
+    log = session.uploads.files["log.csv"]
+    assert log.quantities == {"water"} and log.mapped
+    assert log.details["quantities"]["water"]["start_utc"] == "2024-05-01T10:00:00.0Z"
+    assert log.details["quantities"]["water"]["forward_kn"] == [10.0, 10.2]
+
+
+@pytest.fixture
+def pictures(tmp_path: Path) -> Path:
+    """Folder for pictures, to be looked at."""
+    return tmp_path
