@@ -69,7 +69,7 @@ def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: i
         visitor.wait_for_run(1)
         _choose(visitor, "scenario", "sikuliaq-like")
         _choose(visitor, "duration (h), exact", 24.0)
-        visitor.set("method", "complementary")
+        visitor.ask("edit-method", "2")
         visitor.control(ZETA)
         visitor.rest(1.0)
         for pin in range(pins):

@@ -48,7 +48,7 @@ def trace_step(*, moving: bool) -> dict[CodeType, str]:
         with Visitor(server.port) as visitor:
             visitor.set(PAGE_STATE, "1920x1080|Method|Frequency|Errors")
             visitor.wait_for_run(1)
-            visitor.set("method", "complementary")
+            visitor.ask("edit-method", "2")
             visitor.control(ZETA)
             visitor.rest(1.0)
             for step in range(_STEPS):

@@ -50,7 +50,7 @@ class Visitor:
         self.controls: dict[str, dict[str, Any]] = {}
         """Newest control of each label, as the server described it."""
         self._held: dict[str, Any] = {}
-        self.run_number = self.picture_number = 0
+        self.run_number = self.picture_number = self._asked = 0
         self._run_element = ""
         self.notices: list[tuple[str, str]] = []
         """Title and text of every notification that came."""
@@ -80,6 +80,11 @@ class Visitor:
         self._held[uuid] = value
         self._send({"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}})
         return time.perf_counter()
+
+    def ask(self, command: str, argument: str = "") -> None:
+        """Let the server carry out a command of the page."""
+        self._asked += 1
+        self.set(PAGE_COMMAND, json.dumps([[self._asked, command, argument]]))
 
     def upload(self, label: str, name: str, content: bytes) -> None:
         """Send a file to the upload button with this label, in pieces, as the page does."""

@@ -164,7 +164,7 @@ def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> 
         page.set_default_timeout(120_000)
         sessions: Any = None
         bench = Bench(page, f"http://127.0.0.1:{order.port}/", sessions).open()
-        bench.choose("method", "complementary")
+        bench.page.evaluate("() => schuler.command('edit-method', '2')")
         bench.box("network.zeta").wait_for()
 
         def answer_s(value: float) -> float:
