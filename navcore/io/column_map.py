@@ -101,7 +101,8 @@ class QuantityMap(Parameters):
     @property
     def bare_unit(self) -> str:
         """Unit without the number before it."""
-        return _SCALE.sub("", self.unit, count=1)
+        scale = _SCALE.match(self.unit)
+        return self.unit[scale.end() :] if scale else self.unit
 
 
 class ColumnMap(Parameters):
