@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from schuler_bench.plots.style import INK, method_color
+from schuler_bench.shell.layout import layout_for
 from schuler_bench.views.appearance.view import DARK
 from tests import dark_page as theme
 from tests.browser.driver import SWEEP, Bench
@@ -173,6 +174,6 @@ def test_lesson_and_explanation_fit_the_window(moving: Bench, size: tuple[int, i
     page.keyboard.press("F1")
     explained(moving, "scenario")
     box: Any = page.locator("#sb-explain").bounding_box()
-    assert box["x"] >= 0.2 * size[0] * 0.9 and box["x"] + box["width"] <= size[0]
+    assert box["x"] >= layout_for(*size).left_px and box["x"] + box["width"] <= size[0]
     assert box["y"] >= 0
     assert box["y"] + box["height"] <= size[1] - 60, "it leaves the playback free"

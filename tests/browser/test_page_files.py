@@ -47,7 +47,7 @@ def test_two_nmea_files_and_a_csv_are_brought_to_a_run(
     fresh.page.screenshot(path=pictures / "refused.png")
     fresh.choose("column", "wann")
     fresh.choose("means", "time")
-    assert "does the day or the month come first?" in fresh.page.locator(".sb-note").last.inner_text()
+    fresh.page.locator(".sb-note").filter(has_text="does the day or the month come first?").wait_for()
     fresh.page.screenshot(path=pictures / "asked.png")
     fresh.choose("unit", "DD/MM/YYYY hh:mm:ss")
     row = "xpath=ancestor::*[contains(@class, 'mantine-Flex-root')][1]//input"  # viser gives it no id

@@ -11,6 +11,7 @@ from navcore.scenario.model import Scenario
 from schuler_bench.misprints import MISPRINTS
 from schuler_bench.shell.layout import BAR_PX, STRIP_PX, layout_for
 from schuler_bench.views import load
+from schuler_bench.views.misprints.view import misprint_title
 from schuler_bench.views.poles.figure import ZOOM
 from tests.browser.conftest import Another
 from tests.browser.driver import SIZES, SWEEP, Bench
@@ -192,7 +193,7 @@ def test_the_budgets_of_eight_methods_do_not_overlap(bench: Bench, size: tuple[i
 def drawn(bench: Bench, id: str, shown: str) -> list[Any]:
     """Choose a misprint and a form of it; return name, dash and length of its curves, once they are drawn."""
     found = MISPRINTS[id]
-    bench.choose("misprint", f"{found.paper}, {found.where}: {found.consequence}")
+    bench.choose("misprint", misprint_title(found))
     bench.choose("form shown", shown)
     return bench.page.wait_for_function("look.misprint", arg=[id, shown]).json_value()
 

@@ -117,7 +117,7 @@ def test_the_table_has_a_row_a_method_with_share_limit_and_this_run(ship: Scenar
     rows = re.findall(r'<tr data-design="(.*?)" data-met="(.*?)">(.*?)</tr>', html)
     assert [name for name, _, _ in rows[:3]] == [method.name for method in ship.method]
     assert [float(met) for _, met, _ in rows[:3]] == [by_name[m.name].share.met for m in ship.method]
-    assert "largest tilt: median " in rows[0][2] and ", limit ≤ 12 arcsec" in rows[0][2]
+    assert "largest tilt: median " in rows[0][2] and ", limit ≤\xa012\xa0arcsec" in rows[0][2]
     assert "✗ misses largest tilt, settling" in rows[0][2]
     assert "ζ = 0.5, η = 0.5" in rows[2][2]
     grows = [(method.growth_per_s or 0.0) > 0.0 for method in run.methods]

@@ -17,7 +17,7 @@ _BETWEEN_PX = 8
 _MISPRINT, _SWITCH = Text("misprint"), Text("form shown")
 
 
-def _title(found: Misprint) -> str:
+def misprint_title(found: Misprint) -> str:
     """Entry of the chooser; what is no error says so."""
     parts = {"paper": found.paper, "where": found.where, "consequence": found.consequence}
     if found.remark:
@@ -25,7 +25,7 @@ def _title(found: Misprint) -> str:
     return Text("{paper}, {where}: {consequence}", **parts)
 
 
-_TITLES = {_title(m): id for id, m in MISPRINTS.items()}
+_TITLES = {misprint_title(m): id for id, m in MISPRINTS.items()}
 
 
 @lru_cache(maxsize=32)
