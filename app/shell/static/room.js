@@ -45,13 +45,21 @@
     const shown = tabs.filter((tab) => tab.offsetWidth > 0); // those of the list behind the row have no place in it
     if (tools.length < 2 || shown.length === 0 || new Set(shown.map((tab) => tab.offsetTop)).size > 1) return area.removeAttribute("data-sb-up");
     area.dataset.sbUp = "";
-    area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
     const start = strip.offsetParent === shown[0].offsetParent ? strip.offsetLeft : 0;
-    const end = Math.max(...shown.map(({ offsetLeft, offsetWidth }) => offsetLeft + offsetWidth));
-    area.style.setProperty("--sb-left-px", `${end - start + 10}px`);
-    area.style.setProperty("--sb-right-px", `${(more?.offsetWidth ?? 0) + 8}px`);
-    const rows = tools.map((tool) => Math.round(tool.getBoundingClientRect().top));
-    if (Math.max(...rows) - Math.min(...rows) > strip.offsetHeight / 2 || viewport.scrollWidth > viewport.clientWidth) area.removeAttribute("data-sb-up");
+    const fits = () => {
+      const end = Math.max(...shown.map(({ offsetLeft, offsetWidth }) => offsetLeft + offsetWidth));
+      area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
+      area.style.setProperty("--sb-left-px", `${end - start + 10}px`);
+      area.style.setProperty("--sb-right-px", `${(more?.offsetWidth ?? 0) + 8}px`);
+      const rows = tools.map((tool) => Math.round(tool.getBoundingClientRect().top));
+      return Math.max(...rows) - Math.min(...rows) <= strip.offsetHeight / 2 && viewport.scrollWidth <= viewport.clientWidth;
+    };
+    if (fits()) return;
+    const labelled = !strip.hasAttribute("data-sb-bare");
+    strip.toggleAttribute("data-sb-bare", true); // the names of groups give way to the tools
+    if (labelled && fits()) return;
+    strip.toggleAttribute("data-sb-bare", !labelled);
+    area.removeAttribute("data-sb-up");
   }
 
   function fill(viewport) {
