@@ -40,8 +40,11 @@ BEST = Text("best of all")
 """Said of the best number of a table's row or column, which ``class="sb-best"`` marks."""
 SEA = "#F4F7FA"
 
-# The page's own font stack, so that a plot's text is the page's text.
-FONT_FAMILY = '-apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif'
+# The page's own font stack, so that a plot's text is the page's; the last ones have the signs of buttons.
+FONT_FAMILY = (
+    '-apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif, '
+    '"DejaVu Sans", "Segoe UI Symbol"'
+)
 SVG_FONT = FONT_FAMILY.replace('"', "'")
 """The same as an attribute of SVG."""
 FONT_SIZE = 13
