@@ -100,55 +100,52 @@ class HeaderPanel:
         """Say which run the pictures show."""
         count = len(run.methods)
         span = duration(float(run.t_s[-1])) if len(run.t_s) else "0 s"
-        text = Text.plural(
-            "Run {number}: {span}, {count} method, {frame_ms:.0f} ms",
-            "Run {number}: {span}, {count} methods, {frame_ms:.0f} ms",
-            number=number,
+        text = Text("Run {number}", number=number)
+        if run.status != "ok":
+            text = Text("{text}, {status}", text=text, status=ENDINGS[run.status])
+        rest = Text.plural(
+            "{span}, {count} method, {frame_ms:.0f} ms",
+            "{span}, {count} methods, {frame_ms:.0f} ms",
             span=span,
             count=count,
             frame_ms=frame_ms,
         )
-        if run.status != "ok":
-            text = Text("{text}, {status}", text=text, status=ENDINGS[run.status])
         if outdated:
-            self._show_state(Text("{text}; a new run follows", text=text), _WAITS)
+            self._show_state(text, Text("a new run follows"), _WAITS)
         else:
-            self._show_state(text, "#2E7D32" if run.status == "ok" else style.DANGER)
+            self._show_state(text, rest, "#2E7D32" if run.status == "ok" else style.DANGER)
         self._show_buttons(progress=False, again=False)
         self._note.content = notices.note(run.warnings, "info")
         self._note.visible = bool(run.warnings)
 
     def show_moving(self) -> None:
         """Say that only the pictures in front follow the slider; the rest is shown when it rests."""
-        self._show_state(Text("The slider moves; 3D view and numbers follow when it rests"), _WAITS)
+        self._show_state(Text("The slider moves"), Text("3D view and numbers follow when it rests"), _WAITS)
 
     def show_progress(self, fraction: float, number: int) -> None:
         """Say that the pictures are old and a run is under way."""
         self._progress.value = round(100.0 * fraction, 1)
         if not self._progress.visible:
-            text = Text("Computing; the pictures still show run {number}", number=number)
-            self._show_state(text, _WAITS, old=True)
+            self._show_state(Text("Computing"), _still(number), _WAITS, old=True)
             self._show_buttons(progress=True, again=False)
 
     def show_stopped(self, number: int) -> None:
         """Say that the pictures are old because the run was stopped."""
-        self._show_old(Text("Stopped; the pictures still show run {number}", number=number))
+        self._show_old(Text("Stopped"), _still(number))
 
     def show_waiting(self, scenario: Scenario, number: int) -> None:
         """Say that the pictures are old until the user starts a run that would take long."""
         samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz / 1e6
-        text = Text("{samples:.3g} million samples a method: run it when you are ready", samples=samples)
-        whole = Text("Strapdown, {text}; the pictures still show run {number}", text=text, number=number)
-        self._show_old(whole, again=RUN_STRAPDOWN)
+        rest = Text("{samples:.3g} million samples a method; {still}", samples=samples, still=_still(number))
+        self._show_old(Text("Strapdown waits"), rest, again=RUN_STRAPDOWN)
 
     def show_failed(self, number: int) -> None:
         """Say that the pictures are the last good ones."""
-        text = Text("The run failed; the pictures show run {number}", number=number)
-        self._show_old(text, style.DANGER)
+        self._show_old(Text("The run failed"), _still(number), style.DANGER)
 
-    def _show_old(self, text: str, color: str = _WAITS, again: str = RUN_AGAIN) -> None:
+    def _show_old(self, text: str, rest: str, color: str = _WAITS, again: str = RUN_AGAIN) -> None:
         """Say why the pictures are old, beside a button that runs the scenario."""
-        self._show_state(text, color, old=True)
+        self._show_state(text, rest, color, old=True)
         self._again.label = again
         self._show_buttons(progress=False, again=True)
 
@@ -156,11 +153,18 @@ class HeaderPanel:
         self._progress.visible = self._stop.visible = progress
         self._again.visible = again
 
-    def _show_state(self, text: str, color: str, *, old: bool = False) -> None:
+    def _show_state(self, text: str, rest: str, color: str, *, old: bool = False) -> None:
+        """Say something, and more where the bar has room for it."""
         self._state.content = Text(
-            '<div id="sb-status" role="status" data-sb-part="status" title="{text:html}">'
-            '<span style="background:{color}"></span>{text:html}</div>{dim}',
+            '<div id="sb-status" role="status" data-sb-part="status" title="{text:html}: {rest:html}">'
+            '<span style="background:{color}"></span><b>{text:html}</b> '
+            "<div data-sb-drops><span>{rest:html}</span></div></div>{dim}",
             color=color,
             text=text,
+            rest=rest,
             dim=_DIM if old else "",
         )
+
+
+def _still(number: int) -> str:
+    return Text("the pictures still show run {number}", number=number)

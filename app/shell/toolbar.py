@@ -20,13 +20,16 @@ _ICONS = {
     REDO: "m15 14 5-5-5-5M20 9H10a6 6 0 0 0 0 12h3",
     RESET_ALL: "M4 4v6h6M4.6 10A8 8 0 1 1 4 14",
 }
-_WATCHING = "<style>.sb-handle, .sb-handle-scale, .sb-handle-told { display: none; }</style>"
-"""For a page that watches: it sees no handle (static/handle.js), for one would do nothing."""
+_WATCHING = (
+    "<style>.sb-handle, .sb-handle-scale, .sb-handle-told, .sb-plus, .sb-menu { display: none; }"
+    ".sb-limit { pointer-events: none; }</style>"
+)
+"""For a page that watches: what would do nothing is out of its sight, or cannot be clicked."""
 _PRESENT = Text("Drive alone: other pages of this session watch until you press it again or leave")
 _SEARCH = Text(
     '<div data-sb-part="search"><button class="sb-do" data-palette '
     'title="All commands (Ctrl+K); their keys: ?">'
-    "Find a command <kbd>Ctrl+K</kbd></button></div>"
+    "<span data-sb-drops><kbd>Ctrl+K</kbd><span>Find a command</span></span></button></div>"
 )
 _PRESENTING = Text("You present; press to let the other pages take part again")
 
@@ -113,7 +116,7 @@ class Toolbar:
         _put(
             self._changed,
             Text(
-                '<div class="sb-changed" data-sb-part="changed">{words}{button}</div>',
+                '<div class="sb-changed" data-sb-part="changed" data-sb-drops>{words}{button}</div>',
                 words=words,
                 button=button,
             ),

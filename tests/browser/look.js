@@ -234,6 +234,7 @@ look.clipped = () => {
     for (let at = parent; at !== document.body; at = at.parentElement) {
       const {clipPath, overflowX, overflowY, position} = getComputedStyle(at), box = at.getBoundingClientRect();
       if (clipPath !== 'none' || box.width < 2) { cut = false; break; } // for screen readers
+      if (at.matches('[data-sb-drops]') && text.top >= box.bottom - 1) { cut = false; break; } // left out whole
       cut ||= overflowX !== 'visible' && (text.left < box.left - 1.5 || text.right > box.right + 1.5);
       scrolls ||= ['auto', 'scroll'].includes(overflowY);
       cut ||= !scrolls && overflowY === 'hidden' && (text.top < box.top - 3 || text.bottom > box.bottom + 3);
@@ -241,7 +242,7 @@ look.clipped = () => {
     }
     if (cut) found.push(data.trim());
   }
-  const boxes = [...document.querySelectorAll('input')].filter(e => e.offsetParent && e.clientWidth > 2);
+  const boxes = [...document.querySelectorAll('input')].filter(e => e.offsetParent && e.clientWidth > 2 && e.checkVisibility());
   return [...found, ...boxes.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.value)];
 };
 
@@ -754,7 +755,7 @@ look.viewFilled = () => {
 
 // ------------------------------------------------------------ windows/test_drawing
 
-look.status = () => document.querySelector('#sb-status').textContent;
+look.status = () => document.querySelector('#sb-status > b').textContent;
 
 // A key of the slider is held down: to the right and back, until it is let go.
 look.hold = id => {

@@ -89,7 +89,7 @@ def test_a_narrow_window_cuts_no_text_and_breaks_no_word(lettered: Bench) -> Non
     lettered.page.locator(".sb-pins tbody tr").nth(1).wait_for(state="attached")
     for tab in ("Compare", "Method", "Log", "Tune"):
         lettered.tab(tab)
-        layout.wait_until_it_fits(lettered, tab, scrolls=tab != "Tune")
+        layout.wait_until_it_fits(lettered, tab, scrolls=tab != "Tune" or lettered.size[0] < 1000)
         assert lettered.page.evaluate("look.clipped") == [], tab
         if tab == "Compare":
             assert lettered.page.evaluate("look.broken", ".sb-pins") == []

@@ -48,7 +48,8 @@ def test_the_controls_begin_right_below_bar_and_strip(moving: Bench, size: tuple
     assert (strip["x"], strip["y"], strip["width"], strip["height"]) == (0, BAR_PX, size[0], STRIP_PX)
     tabs = box(page.get_by_role("tab", name="Method", exact=True))
     assert tabs["y"] - BAR_PX - STRIP_PX < 4
-    assert box(page.locator(f"label[for='{moving.id('method')}']"))["y"] < BAR_PX + STRIP_PX + 70
+    assert box(page.locator(".sb-chips"))["y"] < BAR_PX + STRIP_PX + 70
+    assert box(moving.slider("network.zeta"))["y"] <= 260
     for name in ("Undo", "Redo", "Share", "Present", "Menu", "Verify with full strapdown"):
         found = box(moving.button(name))
         assert found["y"] >= 0 and found["y"] + found["height"] <= BAR_PX, name
@@ -77,7 +78,7 @@ def test_a_card_says_which_limits_are_met_and_what_has_changed_since_the_pin(mov
     require(moving, settling_s=1.0)
     card = page.locator("#sb-strip .sb-result").nth(2)
     card.get_by_text("0 of 1").wait_for()
-    assert "misses settling" in (card.locator(".sb-fact").last.get_attribute("title") or "")
+    assert "misses settling" in (card.locator(".sb-fact").first.get_attribute("title") or "")
     assert session.run is not None
     session.pins.add(session.run, "sikuliaq-like", method="complementary")
     old = measure(session.run.methods[2], "settling_s")

@@ -83,18 +83,18 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
     limits = asked(run, run.scenario.requirement)
     for place, method in enumerate(part.methods):
         name, state = method.method.name, display.state_of(method.method.name)
-        numbers = [*_numbers(method, _before(found, name), display)]
-        if limits:
+        facts = [*_numbers(method, _before(found, name), display)]
+        if limits:  # the verdict first: where a card has no room for all, the last ones are left out
             missed = [verdict.quantity.label for verdict in limits if not verdict.passed[place]]
-            numbers.append(_met(len(limits), missed))
+            facts.insert(0, _met(len(limits), missed))
         ended = Text.joined(", ", [words for words in (ENDINGS.get(method.status, ""), word(state)) if words])
         said = Text("<i>{words}</i>", words=ended) if ended else ""
         yield Text(
             '<div class="sb-result" data-state="{state}" data-edited="{pressed}" '
             'style="--color:{color}"><button class="sb-tint" '
             'data-command="{legend} {name:html}" title="{hint}" aria-label="{name:html}: {hint}"></button>'
-            '<button class="sb-edit" data-command="{edit} {place}" aria-pressed="{pressed}" '
-            'title="Edit {name:html}"><b>{name:html}</b>{said}{numbers}</button></div>',
+            '<button class="sb-edit" data-sb-drops data-command="{edit} {place}" aria-pressed="{pressed}" '
+            'title="Edit {name:html}"><b>{name:html}</b>{said}{facts}</button></div>',
             state=state,
             color=style.method_color(place),
             legend=COMMAND,
@@ -104,7 +104,7 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
             pressed="true" if place == selected else "false",
             name=name,
             said=said,
-            numbers=Text.joined("", numbers),
+            facts=Text.joined("", facts),
         )
 
 
