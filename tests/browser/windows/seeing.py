@@ -17,6 +17,8 @@ PATIENCE_S = 20.0
 WORD = re.compile(r"[A-Za-z]{3,}")
 KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b|\b[a-z_]+ = (?:\"[a-z0-9_]+\"|[0-9.]+)")
 """A field of the scenario file, alone or with its value, a column, a file."""
+NODE = re.compile(r"(?<!\S)/\w+")
+"""A node of the scene, as viser's own panel names it."""
 SYMBOLS = frozenset(
     "Schuler Bench CSV SVG PNG TOML JSON HTML NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
     "log linear exact Deng Liu Zhao Sun Zha Sikuliaq fig eq theory md RMS GPS LQG IMU WGS ENE ESE SSE SSW "
@@ -51,7 +53,7 @@ def models(base: type) -> list[type]:
 def left_out(seen: Iterable[str]) -> list[str]:
     """Texts with a word of English in them, be the rest translated or not."""
     known = as_written()
-    bare = {text: KEY.sub("", text) for text in seen}
+    bare = {text: NODE.sub("", KEY.sub("", text)) for text in seen}
     return sorted(text for text in seen if any(word not in known for word in WORD.findall(bare[text])))
 
 
