@@ -63,6 +63,7 @@
   }
 
   function fill(viewport) {
+    if (viewport.getClientRects().length === 0) return; // of a tab that has just gone: the panel is another's now
     raise(viewport);
     fold(viewport);
     const frame = viewport.getBoundingClientRect();
