@@ -184,7 +184,7 @@ def _figure_7() -> Comparison:
     peaks = [float(np.max(np.abs(y))) for y in (quarter, half, switched, kept)]
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis(Text("change of the east velocity error"), "m/s"),
+        y_axis=Axis(Text("change of δVE"), "m/s"),
         x=t,
         curves=(
             Curve(Text("s = 0.25 m/s (what Liu says it is like)"), "printed", quarter),
