@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from navcore.foundation.text import Text
 from navcore.law.policy.adaptive import SUN_TABLE
 from schuler_bench.plots import style
+from schuler_bench.plots.svg_axes import word
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number, round_up
 
@@ -44,10 +45,10 @@ def table_svg(tuning: Tuning, color: str) -> str:
         _axes(across, high, at),
         line(sun, style.MUTED, dash="6 4") + line(rows, color) + dots,
         f'<line x1="{_LEFT + 60}" y1="10" x2="{_LEFT + 82}" y2="10" stroke="{color}" stroke-width="2"/>',
-        _label(_LEFT + 87, 14, Text("found")),
+        word(_LEFT + 87, 14, Text("found")),
         f'<line x1="{_LEFT + 140}" y1="10" x2="{_LEFT + 162}" y2="10" stroke="{style.MUTED}" '
         'stroke-width="1.6" stroke-dasharray="6 4"/>',
-        _label(_LEFT + 167, 14, Text("Sun, Table 1")),
+        word(_LEFT + 167, 14, Text("Sun, Table 1")),
     )
     return Text(
         '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
@@ -61,27 +62,17 @@ def table_svg(tuning: Tuning, color: str) -> str:
     )
 
 
-def _label(x: float, y: float, words: str, anchor: str = "start") -> str:
-    return Text(
-        '<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>',
-        x=x,
-        y=y,
-        words=words,
-        anchor=anchor,
-    )
-
-
 def _axes(across: float, high: float, at) -> str:
     (x0, y0), (x1, y1) = at(0.0, 0.0), at(across, high)
     parts = [f'<path d="M{x0} {y1} V{y0} H{x1}" fill="none" stroke="{style.REFERENCE}"/>']
     for part in (0.0, 0.5, 1.0):
         x, y = at(part * across, part * high)
-        parts.append(_label(x, y0 + 15, number(part * across, 3), "middle"))
-        parts.append(_label(x0 - 5, y + 4, number(part * high, 3), "end"))
+        parts.append(word(x, y0 + 15, number(part * across, 3), "middle"))
+        parts.append(word(x0 - 5, y + 4, number(part * high, 3), "end"))
         if part:
             parts.append(f'<path d="M{x0} {y:.1f} H{x1}" stroke="{style.GRID}"/>')
-    parts.append(_label(0.5 * (x0 + x1), HEIGHT - 4, Text("velocity difference (kn)"), "middle"))
-    parts.append(_label(4, 14, "ζ (–)"))
+    parts.append(word(0.5 * (x0 + x1), HEIGHT - 4, Text("velocity difference (kn)"), "middle"))
+    parts.append(word(4, 14, "ζ (–)"))
     return Text.joined("", parts)
 
 
