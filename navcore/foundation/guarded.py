@@ -10,6 +10,7 @@ import os
 import pickle
 import signal
 import sys
+import tempfile
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ _LARGEST_ANSWER = 512 * 2**20
 _MOST_FAULTS = 50
 _AT_ONCE = 2
 _WAIT_FOR_END_S = 2.0
+_LONGEST_FOLDER = 70
+"""Letters of the path of the temporary folder, where the helper's socket lies: it has room for about 100."""
 
 
 @dataclass(frozen=True)
@@ -113,9 +116,8 @@ def _in_child(what: str, limits: Limits, function: Callable[..., Any], arguments
     child = context.Process(target=_work, args=(theirs, limits, function, arguments), daemon=True)
     try:
         child.start()
-    except OSError:  # the helper listens in a temporary folder
-        allowed = "cannot be read: no process can be started for it; is there a temporary folder with room?"
-        raise _refused(what, allowed) from None
+    except OSError:
+        raise _refused(what, _not_started()) from None
     theirs.close()
     try:
         if not ours.poll(limits.wall_s):
@@ -138,6 +140,20 @@ def _in_child(what: str, limits: Limits, function: Callable[..., Any], arguments
 
 def _refused(what: str, allowed: str) -> InputError:
     return InputError(Fault(what, "", None, allowed))
+
+
+def _not_started() -> str:
+    """Why no child can be started: the helper listens in a temporary folder."""
+    try:
+        letters = len(tempfile.gettempdir())
+    except FileNotFoundError:
+        letters = 0
+    if letters > _LONGEST_FOLDER:
+        return (
+            f"cannot be read: the path of the temporary folder has {letters} letters, and the process that "
+            f"reads files needs at most {_LONGEST_FOLDER}; set TMPDIR to a shorter one"
+        )
+    return "cannot be read: no process can be started for it; is there a temporary folder with room?"
 
 
 def _size(limits: Limits) -> str:

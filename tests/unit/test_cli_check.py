@@ -213,3 +213,14 @@ def test_a_preset_is_understood_right_after_an_installation(tmp_path):
         )
     assert (first.returncode, second.returncode, second.stderr) == (0, 0, "")
     assert first.stderr.startswith("kernels: ") and first.stdout == second.stdout
+
+
+def test_a_temporary_folder_with_a_long_path_is_named(tmp_path):
+    deep = tmp_path / ("a" * 80)
+    deep.mkdir()
+    words = [sys.executable, "-m", "schuler_bench", "check", "zha-fast"]
+    variables = environment() | {"TMPDIR": str(deep)}
+    done = subprocess.run(words, env=variables, capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    said = f"the path of the temporary folder has {len(str(deep))} letters"
+    assert said in done.stderr and "at most 70; set TMPDIR to a shorter one" in done.stderr
