@@ -118,6 +118,9 @@ def test_the_handle_of_the_bode_plot_stands_on_its_curve(bench: Bench) -> None:
       const spot = ring.getBoundingClientRect();
       return Math.abs(spot.top + spot.height / 2 - box.top - up._offset - up.d2p(trace.y[near]));
     }"""
+    # of a pair at the Schuler frequency, where two points of the curve are the same
+    bench.reset("sikuliaq-like", "Frequency", "Errors", "Method", selected=2)
+    bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)
     place(bench, "Frequency")
     bench.page.locator(".sb-handle:visible").last.wait_for()
     bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)

@@ -66,7 +66,9 @@
     const [across, up] = axes(figure, panels[panel]);
     const [left, right] = [next - 1, next].map((place) => across.d2p(trace.x[place]));
     const [from, to] = [next - 1, next].map((place) => up.d2p(trace.y[place]));
-    const top = from + ((to - from) * (across.d2p(omega) - left)) / (right - left);
+    // A resonance has a point of its own, which may be one of the grid's too.
+    const part = right > left ? (across.d2p(omega) - left) / (right - left) : 0;
+    const top = from + (to - from) * part;
     return Number.isFinite(top) ? top : null;
   }
 
