@@ -45,8 +45,8 @@ _LONG_PX, _SHORT_PX = 128, 80
 """Room right of a bar for "12.3 = 45.6 × floor", and for "12.3, 45.6×" where that is too much of a panel."""
 _LEAST_BAR_PX, _LEAST_ROW_PX = 130, 22
 """Widths of the longest bar, and height of a row, below which the panels are arranged otherwise."""
-_WORDS_PX = 230
-"""Width of a panel from which its axis says in full what the parts of a bar are."""
+_TITLE_LETTER_PX = 7.2
+"""Mean width of a letter of an axis title, in a wide font."""
 _GAP_PX, _RIGHT_PX, _TOP_PX = 18, 12, 52
 _NOTE_PX = 26
 """Of the line about the whole figure above the panels, so that it stands clear of their titles."""
@@ -303,6 +303,8 @@ def _layout(
             what = Text("{what}, × how many times it", what=what)
             if _NOTE_LETTER_PX * len(_together(what, note)) > width_px - _RIGHT_PX:
                 what = Text("the dashed line is the floor, × how many times it")
+    if any(_unit_title(kind.unit, grid.wide) == kind.unit for kind in shown):
+        what = Text("{what}; parts by variance", what=what)
     layout = style.layout(
         meta={"aspect": aspect},
         barmode="stack",
@@ -324,7 +326,7 @@ def _layout(
         values.append(getattr(budget.floor.rms, kind.figure))
         peak = max((v / kind.size for v in values if v is not None and math.isfinite(v)), default=0.0)
         layout[f"xaxis{suffix}"] = style.axis(
-            _axis_title(kind.unit, grid.wide),
+            _unit_title(kind.unit, grid.wide),
             domain=[left, left + grid.wide / inner_w],
             anchor=f"y{suffix}",
             range=[0.0, grid.headroom * peak if peak > 0.0 else 1.0],
@@ -357,11 +359,14 @@ def _layout(
     return layout
 
 
-def _axis_title(unit: str, wide: float) -> str:
-    """Unit, and what the parts of a bar are."""
-    if wide < _WORDS_PX:
-        return Text("{unit}, parts by variance", unit=unit)
-    return Text("{unit}; parts: shares of variance", unit=unit)
+def _unit_title(unit: str, wide: float) -> str:
+    """Unit and, where it has room, what the parts of a bar are."""
+    titles = (
+        Text("{unit}; parts: shares of variance", unit=unit),
+        Text("{unit}, parts by variance", unit=unit),
+        unit,
+    )
+    return style.fitting(titles, wide, _TITLE_LETTER_PX)
 
 
 def _cut(name: str) -> str:
