@@ -48,7 +48,6 @@ FONT_FAMILY = (
 SVG_FONT = FONT_FAMILY.replace('"', "'")
 """The same as an attribute of SVG."""
 FONT_SIZE = 13
-TITLE_SIZE = 14
 
 LINE_WIDTH = 2.0
 CURVE_WIDTH = 1.5
@@ -254,7 +253,7 @@ def heading(content: str, shift_px: float, xref: str = "paper") -> dict[str, Any
         xanchor="left",
         yanchor="middle",
         yshift=shift_px,
-        font={"size": TITLE_SIZE, "color": INK},
+        font={"size": FONT_SIZE, "color": INK},
     )
 
 

@@ -81,7 +81,7 @@ class HeaderPanel:
         ]
         tab = self._focus.get(scenario.view.focus, "")
         self._about.content = Text(
-            '<div data-sb-part="about"><button class="sb-do sb-info" popovertarget="sb-focus" '
+            '<div data-sb-part="about"><button class="sb-do sb-about" popovertarget="sb-focus" '
             'aria-label="About the scenario" title="{title:html}">i</button>'
             '<div id="sb-focus" popover data-scenario="{origin:html}" data-tab="{tab:html}">'
             "{line}</div></div>",

@@ -59,7 +59,7 @@ def note(lines: Iterable[str], tone: Tone) -> str:
     ink, ground = _TONES[tone]
     return Text(
         '<div role="note" class="sb-note sb-{tone}" style="margin:0 10px 8px;padding:4px '
-        "8px;font-size:12.5px;line-height:1.35;color:{ink};background:{ground};border-left:3px "
+        "8px;font-size:13px;line-height:1.35;color:{ink};background:{ground};border-left:3px "
         'solid {ink};border-radius:2px">{shown}</div>',
         tone=tone,
         ink=ink,
@@ -71,7 +71,7 @@ def note(lines: Iterable[str], tone: Tone) -> str:
 def heading(text: str) -> str:
     """HTML of a small heading between controls."""
     return Text(
-        '<div style="margin:6px 10px 4px;font-size:12.5px;font-weight:600;color:{ink}">{text:html}</div>',
+        '<div style="margin:6px 10px 4px;font-size:13px;font-weight:600;color:{ink}">{text:html}</div>',
         ink=style.INK,
         text=text,
     )
@@ -80,7 +80,7 @@ def heading(text: str) -> str:
 def small(text: str) -> str:
     """HTML of a line of secondary text."""
     return Text(
-        '<div style="margin:0 10px 8px;font-size:12.5px;line-height:1.35;color:{muted}">{text:html}</div>',
+        '<div style="margin:0 10px 8px;font-size:13px;line-height:1.35;color:{muted}">{text:html}</div>',
         muted=style.MUTED,
         text=text,
     )

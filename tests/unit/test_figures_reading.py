@@ -50,7 +50,7 @@ def test_type_lines_and_margins_grow_and_the_numbers_stay():
     sizes = laid["font"]["size"], laid["xaxis"]["tickfont"]["size"]
     assert sizes == (SCALE * style.FONT_SIZE,) * 2 and laid["xaxis"]["range"] == [0, 4]
     (note,), (shape,) = laid["annotations"], laid["shapes"]
-    assert (note["y"], note["yshift"], note["font"]["size"]) == (1.0, 19.5, SCALE * style.TITLE_SIZE)
+    assert (note["y"], note["yshift"], note["font"]["size"]) == (1.0, 19.5, SCALE * style.FONT_SIZE)
     assert (shape["x0"], shape["line"]["width"]) == (1, 1.8)
 
 

@@ -8,7 +8,7 @@
   const LEAST_PX = { plotly: 160, chart: 84 };
   const VIEWPORT = ".mantine-ScrollArea-viewport";
   // Type (px), padding (em) and, of the last, letter spacing (em): for fonts as wide as DejaVu Sans.
-  const TYPES = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
+  const TYPES = [[13, 0.6], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
   const TABS = [true, false].flatMap((labelled) => TYPES.slice(0, labelled ? -2 : undefined).map((type) => ({ type, labelled })));
   const FOLDS = "details[data-sb-folds]";
   const waiting = new Set();

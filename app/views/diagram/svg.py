@@ -20,7 +20,7 @@ from schuler_bench.views.diagram.blocks import (
 _INDEX = re.compile(r"_(U\d|[A-Za-z]+\d?)")
 _SIGNS = {"left": (-16.0, -6.0), "top": (7.0, -12.0), "bottom": (7.0, 20.0)}
 _STYLE = (
-    ".sb-d text{font-size:12.5px;fill:#243B53}.sb-d .m{fill:#52667A;font-size:12px}"
+    ".sb-d text{font-size:12px;fill:#243B53}.sb-d .m{fill:#52667A;font-size:12px}"
     ".sb-d .b{fill:#fff;stroke:#52667A;stroke-width:1.3}.sb-d .l{fill:none;stroke:#52667A;stroke-width:1.3}"
     ".sb-d .o{stroke-width:2}.sb-d [data-command]{cursor:pointer}"
     ".sb-d [data-command]:hover .b,.sb-d [data-command]:focus .b{fill:#EAF2FA}"
@@ -205,7 +205,7 @@ def _rich(text: str) -> str:
     marks = [
         Text("<tspan>{part:html}</tspan>", part=part)
         if k % 2 == 0
-        else Text('<tspan dy="3.5" font-size="9.5">{part}</tspan><tspan dy="-3.5">&#8203;</tspan>', part=part)
+        else Text('<tspan dy="3.5" font-size="75%">{part}</tspan><tspan dy="-3.5">&#8203;</tspan>', part=part)
         for k, part in enumerate(parts)
     ]
     return Text.joined("", marks)

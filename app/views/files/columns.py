@@ -210,7 +210,7 @@ def _plot(column: str, samples: tuple[float, ...]) -> str:
     points = " ".join(f"{4 + across * at:.1f},{_HEIGHT - 4 - up * (value - low):.1f}" for at, value in known)
     label = Text("{column} through the file: {low:g} to {high:g}", column=column, low=low, high=high)
     return Text(
-        '<figure style="margin:0 10px 8px;font-size:12.5px;color:{muted}">'
+        '<figure style="margin:0 10px 8px;font-size:13px;color:{muted}">'
         '<svg viewBox="0 0 {width} {height}" width="100%" role="img" '
         'style="background:{ground}" aria-label="{label:html}">'
         '<polyline points="{points}" fill="none" stroke="{ink}" stroke-width="1.4"/></svg>'

@@ -67,7 +67,7 @@ class FilesView(View):
 def _entry(name: str, upload: Upload) -> str:
     text = "\n".join(line.removeprefix("  ") for line in upload.text)
     return Text(
-        '<details class="sb-file" style="margin:0 10px 8px;font-size:12.5px;color:{ink}">'
+        '<details class="sb-file" style="margin:0 10px 8px;font-size:13px;color:{ink}">'
         "<summary><b>{name:html}</b> <span style='color:{muted}'>{kind:html}{sorted:html}</span></summary>"
         '<div style="white-space:pre-wrap;margin-top:4px;color:{muted}">{text:html}</div>'
         "{note}</details>",

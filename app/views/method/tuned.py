@@ -53,7 +53,7 @@ def table_svg(tuning: Tuning, color: str) -> str:
     return Text(
         '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
         'style="max-width:100%" aria-label="damping ratio over velocity difference, found and Sun\'s" '
-        'font-family="{font}" font-size="12.5" fill="{ink}">{parts}</svg>',
+        'font-family="{font}" font-size="12" fill="{ink}">{parts}</svg>',
         width=WIDTH,
         height=HEIGHT,
         font=style.SVG_FONT,

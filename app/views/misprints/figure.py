@@ -124,7 +124,7 @@ def _axis(axis: Axis, unit: Unit, decades: int, room_px: float = math.inf) -> di
     title = Text.joined("<br>" if long else " ", map(style.plain, parts))
     if not axis.log:
         return style.axis(title)
-    small = {"size": style.FONT_SIZE - 2, "color": style.MUTED}
+    small = {"size": style.FONT_SIZE - 1, "color": style.MUTED}
     return style.axis(title, type="log", exponentformat="power", dtick=decades, tickfont=small)
 
 

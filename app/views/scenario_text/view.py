@@ -24,7 +24,7 @@ class ScenarioTextView(PictureView[str]):
         from navcore.scenario.file import to_toml
 
         return Text(
-            '<pre style="margin:4px 12px;font-size:12.5px;line-height:1.4;white-space:pre-wrap">'
+            '<pre style="margin:4px 12px;font-size:12px;line-height:1.4;white-space:pre-wrap">'
             "{to_toml:html}</pre>",
             to_toml=to_toml(with_plain_names(found.run.scenario)),
         )

@@ -251,7 +251,7 @@ class SceneDrawer:
         corners = [[x * HALF_WIDTH, y * HALF_WIDTH, -0.03] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         faces = np.array([[0, 1, 2], [0, 2, 3]])
         self._scene.add_mesh_simple(
-            "/map/sea", np.array(corners), faces, color=style.rgb("#8FC3EE"), side="double", **_UNSHADOWED
+            "/map/sea", np.array(corners), faces, color=style.rgb("#BCDCF4"), side="double", **_UNSHADOWED
         )
 
     def _make_ship(self, name: str, color: tuple[int, int, int] | None = None) -> Any:
