@@ -102,6 +102,14 @@ def lines_of(window: Window, run: Run, selected: int, pins: Sequence[Pin]) -> tu
     return tuple(lines)
 
 
+def lines_without_pins(window: Window, run: Run) -> tuple[Line, ...]:
+    """Measure every method of the present run: what could be pinned."""
+    return tuple(
+        _line(None, style.method_color(place), window.run, run, place, run.scenario.requirement)
+        for place in range(len(window.run.methods))
+    )
+
+
 def _line(
     pin: Pin | None, color: str, part: Run, whole: Run, place: int, requirements: Sequence[Requirement]
 ) -> Line:

@@ -13,7 +13,7 @@ from schuler_bench.session.pins import COLORS, MOST_PINS, Pin
 from schuler_bench.session.shown import Shown, titled, window_of
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
-from schuler_bench.views.compare.table import COLUMNS, lines_of, pins_html
+from schuler_bench.views.compare.table import COLUMNS, lines_of, lines_without_pins, pins_html
 
 PIN, FLIP = Text("Pin this run"), Text("Flip to the baseline")
 CHOSEN, NAME, NOTE, COLOR, SHOWN = (
@@ -115,9 +115,14 @@ class CompareView(PictureView[str]):
         """Make the table of the pins and the present run, HTML."""
         session = self.session
         pins = titled(session.pins.all, found.run.scenario)
-        if not pins:
-            return Text('<div class="sb-no-pins">{small}</div>', small=notices.small(_EMPTY))
         window = window_of(found.run, found.display)
+        if not pins:
+            return Text(
+                '<div class="sb-no-pins">{small}</div><details id="sb-could-pin" data-sb-folds open>'
+                "<summary>What could be pinned</summary>{table}</details>",
+                small=notices.small(_EMPTY),
+                table=pins_html(lines_without_pins(window, found.run), found.display.pins_by, None),
+            )
         lines = lines_of(window, found.run, found.selected, pins)
         baseline = session.pins.baseline(found.display.baseline)
         note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")

@@ -108,7 +108,7 @@ def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None
         see(pinned, pinned.button("Go back to this pin")).click()
     assert pinned.session.scenario == pin.scenario
     see(pinned, pinned.button("Remove this pin")).click()
-    page.locator(".sb-pins table").wait_for(state="detached")
+    page.locator(".sb-no-pins").wait_for()
     assert len(pinned.session.pins.all) == 0
 
 
