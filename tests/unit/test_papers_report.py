@@ -12,7 +12,7 @@ import pytest
 
 from navcore.foundation.notation import in_symbols
 from navcore.scenario.file import presets
-from tools.papers import deng, deng_errors
+from tools.papers import deng_errors, deng_reasons
 from tools.papers.claim import Claim, Exhibit, Paper, Reading, about, at_least, at_most, number, order_of
 from tools.papers.estimate import ratio_estimate
 from tools.papers.markdown import Contradiction, check, exhibit_text, search_text, summary
@@ -73,6 +73,18 @@ def test_a_claim_that_differs_needs_a_reason_and_one_that_agrees_must_not_have_o
         check(claim(2.1, why="stale"), Runs())
 
 
+def test_every_reason_shows_the_effect_of_what_it_names(every):
+    """A reason has a number that is computed from what it names."""
+    bare = [
+        f"{exhibit.name}: {claim.says}"
+        for paper in every
+        for exhibit in paper.exhibits
+        for claim in exhibit.claims
+        if claim.why and not any(f"{{{fact}}}" in claim.why for fact in claim.facts)
+    ]
+    assert bare == []
+
+
 def test_another_reading_stands_in_the_row_and_is_not_counted():
     other = Reading("as a variance", "4", about(4.0, 0.1), lambda runs: 3.0)
     found = check(claim(2.0, readings=(other,)), Runs())
@@ -104,7 +116,7 @@ def test_the_reference_of_deng_explains_pitch_of_the_drive_but_not_roll_and_head
     runs = Runs()
     for row, explained in enumerate((True, False, False)):
         own = deng_errors.statistics(runs, "deng-vehicle", deng_errors.DAMPED)[0, row, 1]
-        referenced = deng.with_reference(runs, "deng-vehicle", row)
+        referenced = deng_reasons.with_reference(runs, "deng-vehicle", row)
         half = 0.5 * deng_errors.TABLE_4[row][1]
         assert own < half
         assert (referenced > half) == explained

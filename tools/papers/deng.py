@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navcore.foundation.units import ARCSEC, DEG, HOUR
+from navcore.foundation.units import ARCSEC, HOUR
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_N, PHI_E, PHI_N
 from navcore.motion.truth import LAT, LON
 from tools.papers.claim import Claim, Exhibit, Paper, Reading, Table, at_least, at_most, number, order_of
@@ -26,6 +26,7 @@ from tools.papers.deng_errors import (
     log_spreads,
     statistics,
 )
+from tools.papers.deng_reasons import WHY_1, WHY_4, effects
 from tools.papers.measure import hours, mean_and_interval, rms
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs, method
@@ -66,56 +67,6 @@ def _table(preset: str, printed: Printed, caption: str) -> Callable[[Runs], Tabl
     return make
 
 
-_HEADING = (
-    "0.02 deg/h and 0.006 deg/sqrt(h) turn the heading by {drift} deg within a run (mean over the seeds), "
-    "and the heading is not damped (nor is the paper's): the sensors that the paper states cannot cause the "
-    "spread of its heading."
-)
-_REFERENCE = (
-    "the reference of the drive is itself good to 0.01 deg (table 3): added in squares to ours it leaves "
-    "{referenced} deg, which lies in the range."
-)
-_CAR = (
-    "the reference of the drive, good to 0.01 deg (divided by cos L in heading), explains little of it: "
-    "added in squares to ours it leaves {referenced} deg. What else the real car adds is not printed."
-)
-_VERTICAL = (
-    "the damping of the vertical channel is not printed; with an ideal altimeter of any gain the noise of "
-    "the accelerometer remains."
-)
-_TURNED = (
-    "the log measures in the axes of the vehicle and is turned by the computed heading, so that the heading "
-    "error of the alignment times the speed appears in the velocity and adds up in the position. It differs "
-    "from seed to seed; the paper shows one drive after one alignment. With a log in east and north it does "
-    "not arise (search)."
-)
-
-
-WHY_1 = {"heading": _HEADING, "V_U": _VERTICAL}
-"""Why a row of table 1 differs, by its name; so do the rows of table 2."""
-WHY_4 = {
-    "pitch": _REFERENCE,
-    **dict.fromkeys(("roll", "heading"), _CAR),
-    **dict.fromkeys(("longitude", "latitude"), _TURNED),
-}
-
-
-def heading_drift(runs: Runs, preset: str) -> float:
-    """Range of the heading error within a run, deg, mean over the seeds."""
-    return float(np.mean([np.ptp(errors(runs, preset, DAMPED, seed)[:, 2]) for seed in SEEDS]))
-
-
-REFERENCE_DEG = 0.01
-"""What Deng's table 3 states for the reference of the drive: pitch and roll; heading divided by cos L."""
-
-
-def with_reference(runs: Runs, preset: str, row: int) -> float:
-    """Spread of an angle (row 0 to 2) with the error of the paper's reference added in squares, deg."""
-    latitude = runs(preset, "run.seed=1").scenario.site.lat_deg * DEG
-    own = REFERENCE_DEG / (float(np.cos(latitude)) if row == 2 else 1.0)
-    return float(np.hypot(np.mean(statistics(runs, preset, DAMPED)[:, row, 1]), own))
-
-
 def _spreads(preset: str, printed: Printed, why: dict[str, str]) -> tuple[Claim, ...]:
     """Each row of a table; "variance" read as a standard deviation, and as a variance beside it."""
 
@@ -134,10 +85,7 @@ def _spreads(preset: str, printed: Printed, why: dict[str, str]) -> tuple[Claim,
             unit,
             kind="fitted" if row in (0, 1, 3, 4) else "direction only",
             why=why.get(name, ""),
-            facts={
-                "drift": lambda runs: heading_drift(runs, preset),
-                "referenced": lambda runs: with_reference(runs, preset, row),
-            },
+            facts=effects(preset, row) if name in why else {},
             readings=(Reading("as a variance", number(value**0.5), order_of(value**0.5, 2.0), ours),),
         )
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navcore.engine.simulation import simulate
 from tools.papers import liu_bridge_rest
 from tools.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
 from tools.papers.liu_switching import (
@@ -14,11 +15,15 @@ from tools.papers.liu_switching import (
     BRIDGE,
     DAYS,
     HARD,
+    METHODS,
     NOVEL,
     PRESET,
+    QUANTITIES,
     RAMP,
     added_by,
     daily,
+    episodes,
+    errors,
     of_method,
     ratio,
     ratios,
@@ -83,6 +88,19 @@ def _difference(case: str, ours: str, than: str) -> Callable[[Runs], np.ndarray]
     return lambda runs: of_method(runs, case, "velocity", ours) - of_method(runs, case, "velocity", than)
 
 
+QUIETER_MPS = 0.01
+
+
+def _quieter_excess(runs: Runs) -> float:
+    """Velocity RMS of bumpless less that of hard in the episodes, with a tenth of the noise, m/s."""
+
+    def make() -> float:
+        found = errors(simulate(episodes(1, noise_mps=QUIETER_MPS)))[:, QUANTITIES.index("velocity")]
+        return float(found[METHODS.index(BEST)] - found[METHODS.index(HARD)])
+
+    return runs.keep("quieter episodes", make)
+
+
 def _never_worse(ours: str, name: str, case: str, where: str, why: str = "") -> Claim:
     return Claim(
         f"{name} is never worse than hard: velocity RMS less that of hard, {where}",
@@ -92,13 +110,14 @@ def _never_worse(ours: str, name: str, case: str, where: str, why: str = "") -> 
         "m/s",
         kind="own",
         why=why,
+        facts={"quieter": _quieter_excess} if why else {},
     )
 
 
 _NOISE = (
     "the change of the log is estimated from two means of 20 s. With noise of 0.1 m/s the error of this "
     "estimate is 0.03 m/s, and it enters as a random step at each switch. With hard nothing enters, because "
-    "here the log has no standing error."
+    "here the log has no standing error. With a tenth of the noise the difference is {quieter} m/s."
 )
 
 BUMPLESS = Exhibit(

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 SCHULER_MIN = 2.0 * math.pi / OMEGA_S / MINUTE
-CORRECTED = 'id = "compass", sigma = 0.0088, xi = 0.7'
+SIGMA = 0.0088
+CORRECTED = f'id = "compass", sigma = {SIGMA}, xi = 0.7'
 CLASSIC = 'id = "classic2"'
 ZHA_MEASURE = 0.005
 """Zha's own end of the transient: exp(-5.25) = 0.5 % of the initial tilt."""
@@ -166,8 +167,12 @@ FAST = Exhibit(
             "%",
             kind="predicted",
             digits=5,
-            why="sigma t is 5.25, not 525 (sigma = 0.0088, t = 600 s), and exp(-5.25) leaves 0.5 %: 99.5 % "
-            "is meant.",
+            why="sigma t is {exponent}, not 525 (sigma = 0.0088, t = 600 s), and the exponential leaves "
+            "{left} %: 99.5 % is meant.",
+            facts={
+                "exponent": lambda runs: SIGMA * 600.0,
+                "left": lambda runs: 100.0 * math.exp(-SIGMA * 600.0),
+            },
         ),
         Claim(
             "K2 for sigma = 0.0088, xi = 0.7 (Zha 4.1)",

@@ -49,7 +49,10 @@ def _claim(ours: str, than: str, axis: str, why: str = "") -> Claim:
         lambda runs: ratios(runs, ours, than, axis),
         strapdown=True,
         why=why,
-        facts={"tenth": lambda runs: float(np.mean(ratios(runs, ours, than, axis, TENTH, LEVELLED_TENTH)))},
+        facts={
+            "tenth": lambda runs: float(np.mean(ratios(runs, ours, than, axis, TENTH, LEVELLED_TENTH))),
+            "east": lambda runs: float(np.mean(ratios(runs, ours, than, "east"))),
+        },
     )
 
 
@@ -94,7 +97,7 @@ DRIVE = Exhibit(
             "free",
             "north",
             "the paper's conventional network halves the east error and leaves the north one as it is; the "
-            "two channels are alike, and ours halves both.",
+            "two channels are alike, and ours leaves {east} of the east error too.",
         ),
         _claim("fast", "classic2", "east"),
         _claim(
