@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 _READERS = (
     "schuler_bench.cli.check_scenario", "navcore.checks.file", "navcore.checks.imu", "navcore.io.csv",
-    "navcore.io.nmea_recording", "navcore.io.tables", "navcore.scenario.file",
+    "navcore.io.gpx", "navcore.io.nmea_recording", "navcore.io.tables", "navcore.scenario.file",
 )  # fmt: skip
-_BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io",)}
+_BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io", "h5py")}
 """Modules that read the file, imported before the bounds are set."""
 
 

@@ -95,6 +95,15 @@ QUANTITIES = {
 """By what the quantity is called here; ``speed`` is through the water, ``ground`` over it, along the axes."""
 _IN_MPS = {"speed_made_good": "sog", "pl_spd": "sog", "pl_sow": "speed"}
 """Names of R2R and SAMOS, whose speeds are in m/s."""
+_OF_ERDDAP = {
+    "platform_speed_wrt_ground": "sog",
+    "platform_speed": "sog",
+    "platform_course": "cog",
+    "platform_orientation": "heading",
+    "platform_heading": "heading",
+    "platform_speed_wrt_sea_water": "speed",
+}
+"""Standard names of the CF conventions, and those of SAMOS in ERDDAP."""
 _TIMES = {
     UTC: "utc time timestamp datetime date_time iso_time isotime time_utc utc_time gps_time timestamp_utc "
     "gpst stamp header_stamp field_header_stamp rosbag_timestamp utc_timestamp datetime_utc date_time_utc "
@@ -105,6 +114,7 @@ _TIMES = {
     DATE: "date date_utc utc_date gps_date date_gmt gmt_date",
 }
 _NAMES = {name: stem for stem, quantity in QUANTITIES.items() for name in quantity.names}
+_NAMES |= _OF_ERDDAP
 _TIME_NAMES = {name: stem for stem, names in _TIMES.items() for name in names.split()}
 _SIGNS = re.compile(r"[^a-z0-9]+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
@@ -217,7 +227,7 @@ def _meaning(index: int, name: str) -> tuple[int, Column | None]:
         else:
             default = "mps" if words in _IN_MPS else QUANTITIES[stem].unit
             sure = bool(given) or words in _IN_MPS or (dimension != "speed" and not unknown)
-            rank = 5 if words in _IN_MPS else QUANTITIES[stem].names.index(words)
+            rank = 5 if words in _IN_MPS | _OF_ERDDAP else QUANTITIES[stem].names.index(words)
             column = Column(index, name.strip(), stem, given or default, sure, unknown, misfit)
         return rank + _LAST * bool(unknown), column
     return 0, None

@@ -10,6 +10,7 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -188,6 +189,49 @@ class _Mat(Container):
         return loadmat(str(self.path), variable_names=[name])[name]
 
 
+class _MatHdf(Container):
+    kind = "MAT file of version 7.3"
+
+    def _parts(self) -> dict[str, Part]:
+        import h5py
+
+        found: list[tuple[str, tuple[int, ...], bool, str]] = []
+        with h5py.File(self.path, "r", locking=False) as file:
+            for name in islice(file, MOST_COLUMNS + 1):
+                held = _own_dataset(file, name)
+                if held is None:
+                    continue
+                kind = str(np.bytes_(held.attrs.get("MATLAB_class", b"")).decode("ascii", "replace"))[:40]
+                number = (
+                    kind in _MAT_NUMBERS and held.dtype.kind in "iufb" and "MATLAB_empty" not in held.attrs
+                )
+                found.append((name, held.shape[::-1], number, kind))
+        return _by_column(found)
+
+    def _unpacked(self, wanted: Sequence[int]) -> int:
+        import h5py
+
+        with h5py.File(self.path, "r", locking=False) as file:
+            held = (_own_dataset(file, name) for name in {self._part(index).variable for index in wanted})
+            return sum(one.nbytes for one in held)
+
+    def _variable(self, name: str) -> np.ndarray:
+        import h5py
+
+        with h5py.File(self.path, "r", locking=False) as file:
+            return np.asarray(_own_dataset(file, name)[()]).T  # HDF5 has the axes of MATLAB in reverse
+
+
+def _own_dataset(file: Any, name: str) -> Any:
+    """A variable that the file itself holds: a link or a dataset may point into any other file."""
+    import h5py
+
+    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+        return None
+    held = file[name]
+    return held if isinstance(held, h5py.Dataset) and not held.is_virtual and not held.external else None
+
+
 class _Npz(Container):
     kind = "npz file"
 
@@ -223,13 +267,11 @@ def is_container(head: bytes, path: Path) -> bool:
 
 
 def open_container(path: Path) -> Container:
-    """Columns of a Parquet, MAT (level 5) or npz file; raises `InputError` where it cannot be read."""
+    """Columns of a Parquet, MAT or npz file; raises `InputError` where it cannot be read."""
     with path.open("rb") as stream:
         head = stream.read(len(_MAT))
-    if head.startswith(_MAT_HDF):
-        allowed = Text("is a MAT file of version 7.3: save it with -v7, or as Parquet, npz or CSV")
-        raise InputError(Fault(path.name, "", None, allowed))
-    return (_Parquet if head.startswith(_PARQUET) else _Npz if head.startswith(_ZIP) else _Mat)(path)
+    kinds = {_PARQUET: _Parquet, _ZIP: _Npz, _MAT_HDF: _MatHdf}
+    return next((kind for start, kind in kinds.items() if head.startswith(start)), _Mat)(path)
 
 
 def _is_npz(path: Path) -> bool:

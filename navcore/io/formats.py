@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 FORMATS = (
     "navcore.io.tables",
+    "navcore.io.gpx",
     "navcore.io.nmea_recording",
     "navcore.io.csv",
 )

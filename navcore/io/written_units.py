@@ -34,7 +34,7 @@ _SPELT = {
     "speed": {
         "mps": "m_s ms meter_second meters_second metre_second metres_second m_sec m_s_1 ms_1 m_sec_1 "
         "meter_per_second meters_per_second metre_per_second metres_per_second meter_second_1 "
-        "metre_second_1",
+        "meters_second_1 metre_second_1 metres_second_1",
         "kn": "kt kts kns knot knots nmi_h nm_h nmi_h_1 nm_h_1",
         "kmh": "km_h kph kmph km_hr km_h_1 km_hr_1 kilometers_per_hour kilometres_per_hour",
         "cms": "cm_s cm_s_1 cm_sec",

@@ -5,6 +5,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pyarrow
 import pytest
@@ -15,6 +16,7 @@ from navcore.checks.imu import check_mapped
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC, DEG, KNOT, STANDARD_GRAVITY
 from navcore.io.column_map import ColumnMap, parse_map
+from navcore.io.containers import open_container
 from navcore.io.recording import read_recording
 from navcore.sensors.recorded_imu import ImuRecord, read_imu
 from schuler_bench.cli import main
@@ -30,11 +32,29 @@ def _mat(path: Path, columns: Columns) -> None:
     savemat(path, columns)
 
 
+def _mat_hdf(path: Path, columns: Columns) -> None:
+    """As MATLAB's ``save -v7.3`` writes them: HDF5 behind a header of 512 bytes, axes in reverse."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, values in columns.items():
+            column = values.reshape(values.shape or (1, 1))
+            held = file.create_dataset(name, data=(column[:, None] if column.ndim == 1 else column).T)
+            kind = "double" if values.dtype == float else str(values.dtype)
+            held.attrs["MATLAB_class"] = np.bytes_(kind)
+    with path.open("r+b") as stream:
+        stream.write(MAT_HDF)
+
+
 def _npz(path: Path, columns: Columns) -> None:
     np.savez(path, allow_pickle=False, **columns)
 
 
-WRITERS: dict[str, Callable[[Path, Columns], None]] = {"parquet": _parquet, "mat": _mat, "npz": _npz}
+MAT_HDF = b"MATLAB 7.3 MAT-file, Platform: GLNXA64"
+WRITERS: dict[str, Callable[[Path, Columns], None]] = {
+    "parquet": _parquet,
+    "mat": _mat,
+    "v7.3.mat": _mat_hdf,
+    "npz": _npz,
+}
 kinds = pytest.mark.parametrize("kind", WRITERS)
 TIME = 0.01 * np.arange(1, 401)
 IMU_MAP = "\n".join(
@@ -101,7 +121,7 @@ def test_a_log_is_read_by_a_map(tmp_path: Path, kind: str) -> None:
     assert read.heading.values[-1, 0] == pytest.approx(90.0 * DEG)
 
 
-@pytest.mark.parametrize("kind", ["mat", "npz"])
+@pytest.mark.parametrize("kind", ["mat", "v7.3.mat", "npz"])
 def test_a_matrix_is_columns_and_a_number_the_interval(tmp_path: Path, kind: str) -> None:
     counts = np.tile(np.array([[10, 0, 0, 0, 0, 8000]], dtype=np.int16), (500, 1))
     path = _file(tmp_path, kind, {"counts": counts, "dt_s": np.array(0.01)})
@@ -134,9 +154,44 @@ def test_what_is_no_table_of_numbers_is_refused_by_name(tmp_path: Path) -> None:
     np.savez(tmp_path / "objects.npz", t_s=np.arange(3.0), speed_mps=np.array(["a", "b", "c"]))
     with pytest.raises(InputError, match="speed_mps: must be a column of numbers"):
         read_recording(tmp_path / "objects.npz")
-    (tmp_path / "new.mat").write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(600, b" "))
-    with pytest.raises(InputError, match="save it with -v7"):
-        read_recording(tmp_path / "new.mat")
+    (tmp_path / "cut.mat").write_bytes(MAT_HDF.ljust(600, b" "))
+    with pytest.raises(InputError, match="cannot be read as a MAT file of version 7.3"):
+        read_recording(tmp_path / "cut.mat")
+
+
+def test_a_mat_file_reads_nothing_from_other_files(tmp_path: Path) -> None:
+    """Links, virtual datasets and external storage of HDF5 may name any file of the machine."""
+    other = tmp_path / "other.h5"
+    with h5py.File(other, "w") as file:
+        file["speed_mps"] = np.arange(3.0)
+    np.arange(3.0).tofile(tmp_path / "raw.bin")
+    virtual = h5py.VirtualLayout((1, 3), float)
+    virtual[0] = h5py.VirtualSource(str(other), "speed_mps", (3,))
+    path = tmp_path / "linked.mat"
+    _mat_hdf(path, {"t_s": np.arange(3.0)})
+    with h5py.File(path, "r+") as file:
+        file["speed_mps"] = h5py.ExternalLink(str(other), "speed_mps")
+        file["lat"] = h5py.SoftLink("/t_s")
+        file.create_virtual_dataset("heading", virtual)
+        stored = [(str(tmp_path / "raw.bin"), 0, 24)]
+        file.create_dataset("pitch", (1, 3), float, external=stored)
+        for name in ("heading", "pitch"):
+            file[name].attrs["MATLAB_class"] = np.bytes_("double")
+    assert open_container(path).names == ["t_s"]
+
+
+def test_a_small_mat_file_that_unpacks_to_gigabytes_is_refused_unread(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.mat"
+    _mat_hdf(path, {"t_s": np.arange(3.0)})
+    with h5py.File(path, "r+") as file:
+        for name in ("x_s", "speed_mps"):
+            held = file.create_dataset(name, (1, 1 << 30), float, chunks=(1, 1 << 16), compression="gzip")
+            held.attrs["MATLAB_class"] = np.bytes_("double")
+        del file["t_s"]
+        file.move("x_s", "t_s")
+    assert path.stat().st_size < 100_000
+    with pytest.raises(InputError, match="at most 6000000 cells are read"):
+        read_recording(path)
 
 
 def test_a_small_npz_that_unpacks_to_gigabytes_is_refused_unread(tmp_path: Path) -> None:
