@@ -52,7 +52,7 @@ def fit_of(scenario: Scenario) -> FittedLog:
         A recording is missing, or the record is too short for a fit.
     """
     from navcore.sensors.fit import fit_delay, fit_log_error, log_along_track
-    from navcore.sensors.recorded import log_recording
+    from navcore.sensors.log_files import log_recording
 
     motion, reference = scenario.motion, scenario.reference
     if not isinstance(motion, TrackMotion) or reference.kind != "file":

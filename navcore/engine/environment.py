@@ -54,9 +54,9 @@ def _start_utc(scenario: Scenario) -> float | None:
 
 def _truth_key(scenario: Scenario, steps: int, step_s: float) -> Hashable:
     motion_key = (scenario.motion, recorded_state(scenario.motion))
-    # t = 0 is the first epoch that track and log share, so each depends on the other's files.
-    log_files = recorded_state(scenario.reference)
-    return (motion_key, log_files, scenario.site, steps, step_s, scenario.earth.name)
+    # t = 0 is the first epoch that track and log share, so each depends on the other's files and clock.
+    log_key = recorded_state(scenario.reference), scenario.reference.clock_s
+    return (motion_key, log_key, scenario.site, steps, step_s, scenario.earth.name)
 
 
 def truth_of(scenario: Scenario, steps: int, step_s: float) -> Truth:

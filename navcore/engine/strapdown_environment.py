@@ -83,7 +83,7 @@ def strapdown_environment(scenario: Scenario) -> StrapdownEnvironment:
     rates, window = scenario.sampling, recorded_window(scenario.motion, scenario.reference)
     start_utc = None if window is None else window.start_s
     seed = scenario.run.seed
-    files = recorded_state(scenario.motion), recorded_state(scenario.reference)
+    files = recorded_state(scenario.motion), recorded_state(scenario.reference), scenario.reference.clock_s
     truth_key = (Text("strapdown truth"), scenario.motion, files, scenario.site, rates, scenario.earth.name)
     try:
         imu = ImuSimulation(

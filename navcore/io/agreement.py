@@ -5,6 +5,7 @@ its direction: scale and current come from least squares together.
 """
 
 from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,8 +36,34 @@ _LEAST_SPEED_MPS = 0.15
 _WORDS = (Text("the speed through the water"), Text("the speed to starboard through the water"))
 
 
+class Finding(NamedTuple):
+    """What a stream is off by.
+
+    Attributes
+    ----------
+    text : str
+        What is told.
+    stream : str
+        ``heading`` or ``water``.
+    late_s : float
+        Time by which it is late; 0 where its scale is wrong.
+    factor : float
+        By which its speed forward is to be multiplied; 1 where its times, or another axis, are wrong.
+    """
+
+    text: str
+    stream: str
+    late_s: float = 0.0
+    factor: float = 1.0
+
+
 def agreement_warnings(recording: Recording) -> list[str]:
-    """Say by which factor or time a log or a heading is off the motion over ground.
+    """Say by which factor or time a log or a heading is off the motion over ground; see `findings`."""
+    return [one.text for one in findings(recording)]
+
+
+def findings(recording: Recording) -> list[Finding]:
+    """By which factor or time a log or a heading is off the motion over ground.
 
     Parameters
     ----------
@@ -48,14 +75,17 @@ def agreement_warnings(recording: Recording) -> list[str]:
         return []
     heading_s, heading = recording.heading.time_s, np.unwrap(recording.heading.values[:, 0])
     course = np.unwrap(np.arctan2(way.east, way.north))
-    words = _lagging(
-        Text("the heading"), lambda lag: _turning(heading_s, heading, way.time_s, course, lag), _LEAST_TURN,
+    found = _lagging(
+        "heading",
+        Text("the heading"),
+        lambda lag: _turning(heading_s, heading, way.time_s, course, lag),
+        _LEAST_TURN,
         min(heading_s[-1], way.time_s[-1]) - max(heading_s[0], way.time_s[0]),
-    )  # fmt: skip
-    return words or _of_log(recording, way, heading_s, heading)
+    )
+    return found or _of_log(recording, way, heading_s, heading)
 
 
-def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.ndarray) -> list[str]:
+def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.ndarray) -> list[Finding]:
     water = recording.water
     if water is None:
         return []
@@ -88,13 +118,13 @@ def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.n
         return found[: len(used)], spread[: len(used)], left
 
     span_s = min(end, time_s[-1]) - max(begin, time_s[0])
-    if words := _lagging(_WORDS[0], lambda lag: fit(lag)[2], _LEAST_SPEED_MPS, span_s):
-        return words
+    if late := _lagging("water", _WORDS[0], lambda lag: fit(lag)[2], _LEAST_SPEED_MPS, span_s):
+        return late
     factors, spread, _ = fit(0.0)
     return list(_scales(factors, spread))
 
 
-def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[str]:
+def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[Finding]:
     for what, factor, deviation in zip(_WORDS, factors, spread, strict=False):
         known = deviation < _KNOWN * max(abs(factor), 1.0)
         if not known or abs(factor - 1.0) <= max(LARGEST_SCALE_ERROR, _SURE * deviation):
@@ -102,7 +132,7 @@ def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[str]:
         slip = Text("the wrong sign")
         if factor > 0.0:
             slip = slip_of(1.0 / factor, SPEED_SLIPS, LARGEST_SCALE_ERROR) or Text("a wrong unit or scale")
-        yield Text(
+        told = Text(
             "{what} agrees with the motion over ground when it is multiplied by {factor:.3g} "
             "± {deviation:.2g} (a steady current is taken off): {slip}?",
             what=what,
@@ -110,6 +140,7 @@ def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[str]:
             deviation=float(deviation),
             slip=slip,
         )
+        yield Finding(told, "water", factor=float(factor) if what == _WORDS[0] else 1.0)
 
 
 def _turning(
@@ -125,7 +156,9 @@ def _turning(
     return float(np.sqrt(np.mean(((off - middle + np.pi) % (2.0 * np.pi) - np.pi) ** 2)))
 
 
-def _lagging(what: str, misfit: Callable[[float], float], least: float, span_s: float) -> list[str]:
+def _lagging(
+    stream: str, what: str, misfit: Callable[[float], float], least: float, span_s: float
+) -> list[Finding]:
     """Tell the time by which a stream is late, if shifted by it the stream fits twice as well."""
     now = misfit(0.0)
     if not least < now < np.inf:
@@ -137,13 +170,22 @@ def _lagging(what: str, misfit: Callable[[float], float], least: float, span_s: 
     best = int(np.argmin(sizes))
     if abs(lags[best]) < SHORTEST_LAG_S or sizes[best] > _BETTER * now:
         return []
+    late_s = _refined(misfit, float(lags[best]), step)
     near = lags[sizes <= sizes[best] + 0.1 * (now - sizes[best])]
-    return [
-        Text(
-            "{what} is {lag:+.0f} s (± {reach:.0f} s) late against the motion over ground: clocks of two "
-            "loggers? Shift its times",
-            what=what,
-            lag=float(lags[best]),
-            reach=0.5 * float(np.ptp(near)) + step,
-        )
-    ]
+    told = Text(
+        "{what} is {lag:+.0f} s (± {reach:.0f} s) late against the motion over ground: clocks of two "
+        "loggers? Shift its times",
+        what=what,
+        lag=late_s,
+        reach=0.5 * float(np.ptp(near)) + step,
+    )
+    return [Finding(told, stream, late_s=late_s)]
+
+
+def _refined(misfit: Callable[[float], float], lag_s: float, step_s: float) -> float:
+    """Time within a step of one on the grid that fits best, to whole seconds."""
+    from scipy.optimize import minimize_scalar
+
+    near = (lag_s - step_s, lag_s + step_s)
+    found: Any = minimize_scalar(misfit, bounds=near, method="bounded", options={"xatol": 0.25})
+    return float(round(found.x))

@@ -1,7 +1,7 @@
 """Content of a recording: time series in UTC, and an account of the files they came from."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -63,6 +63,10 @@ class Series:
     def reach_s(self) -> float:
         """How long before its first and after its last sample the stream is still usable, s."""
         return min(self.interval_s, LONGEST_REACH_S)
+
+    def shifted(self, by_s: float) -> "Series":
+        """Return the same readings at times that are later by ``by_s``."""
+        return self if by_s == 0.0 else replace(self, time_s=self.time_s + by_s)
 
     def gaps(self) -> tuple[int, float]:
         """Count of gaps and the longest one, s (0 when there is none)."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -30,13 +30,10 @@ from navcore.motion.pieces import (
     PIECE_ROLL,
     shared_pieces,
 )
+from navcore.motion.smoothing import FEWEST_FIXES, Polynomials, Spline, clamped, smoothed_columns
 from navcore.motion.static import rest_at
 from navcore.motion.truth import COLUMNS, HEIGHT, Site, Truth
 
-if TYPE_CHECKING:
-    from scipy.interpolate import PPoly
-
-FEWEST_FIXES = 5
 OUTLIER_M = 10.0
 """A fix nearer than this to the line between its neighbours is never called an outlier."""
 OUTLIER_ACCELERATION = 5.0
@@ -46,8 +43,6 @@ LARGEST_VELOCITY_DIFFERENCE = 0.5
 """Recorded velocities further (median, m/s) from the rate of the positions do not belong to them."""
 LONGEST_VELOCITY_GAP_S = 10.0
 """Recorded velocities with longer gaps are not integrated, s."""
-Polynomials = tuple[np.ndarray, np.ndarray]
-"""Breakpoints (n + 1,) and coefficients (4, n), highest power first."""
 
 
 class TrackMotion(MotionParameters):
@@ -104,9 +99,22 @@ class TrackMotion(MotionParameters):
         ),
     )
 
+    heading_clock_s: float = quantity(
+        0.0,
+        unit="s",
+        ge=-86400.0,
+        le=86400.0,
+        slider=(-120.0, 120.0),
+        label=Text("clock correction of the heading"),
+        help=Text("Added to the times of the recorded heading, whose logger has a clock of its own."),
+    )
+
     def recording(self) -> Recording:
-        """Read (or take from the cache) the files; raises `InputError` with field ``file``."""
-        return load(self.file or (), field="file", map_file=self.map)
+        """Files of the track, the clock of the heading put right; raises `InputError` with field ``file``."""
+        recording = load(self.file or (), field="file", map_file=self.map)
+        if recording.heading is None:
+            return recording
+        return replace(recording, heading=recording.heading.shifted(self.heading_clock_s))
 
     def streams(self) -> Streams:
         """Positions and angles of the recording; raises `InputError` if positions or heading are missing."""
@@ -185,7 +193,7 @@ class TrackMotion(MotionParameters):
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
-        key = "smoothed track", recorded_state(self), self.smoothing_s
+        key = "smoothed track", recorded_state(self), self.smoothing_s, self.heading_clock_s
         return kept(key, lambda: _smooth(self.streams(), files, self.smoothing_s))
 
 
@@ -195,8 +203,8 @@ class _Smoothed:
 
     window: Window
     path: _Path
-    heading: _Spline
-    attitude: _Spline | None
+    heading: Spline
+    attitude: Spline | None
 
 
 def _streams(recording: Recording, file: object) -> Streams:
@@ -224,8 +232,8 @@ def _smooth(streams: Streams, files: tuple[str, ...], smoothing_s: float) -> _Sm
     )
 
 
-def _angles(series: Series, smoothing_s: float) -> _Spline:
-    return _smoothed_columns(series.time_s, np.unwrap(series.values, axis=0), smoothing_s)
+def _angles(series: Series, smoothing_s: float) -> Spline:
+    return smoothed_columns(series.time_s, np.unwrap(series.values, axis=0), smoothing_s)
 
 
 class _Path:
@@ -248,7 +256,7 @@ class _Path:
         self._metres = np.array([meridian, prime_vertical * np.cos(lat[0])])
         metres = (np.column_stack([lat, lon]) - self._origin) * self._metres
         _refuse_outliers(position, metres)
-        self._spline = _smoothed_columns(position.time_s, metres, smoothing_s)
+        self._spline = smoothed_columns(position.time_s, metres, smoothing_s)
         if velocity is not None and velocity.tabled and smoothing_s > 0.0:
             self._spline = self._with_velocity(position, metres, velocity, smoothing_s)
         heights = position.values[np.isfinite(position.values[:, 2]), 2]
@@ -256,7 +264,7 @@ class _Path:
 
     def _with_velocity(
         self, position: Series, metres: np.ndarray, velocity: Series, smoothing_s: float
-    ) -> _Spline:
+    ) -> Spline:
         """Spline of positions and recorded velocities together; that of the positions where these differ.
 
         The smoothed velocity is integrated, and only the rest of the positions is smoothed. At the ends of
@@ -273,16 +281,16 @@ class _Path:
         covers = known[0] <= times[0] + reach and known[-1] >= times[-1] - reach
         if not covers or np.diff(known).max() > max(LONGEST_VELOCITY_GAP_S, 2.0 * smoothing_s):
             return self._spline
-        smooth = _smoothed_columns(
+        smooth = smoothed_columns(
             known, self._in_metres(velocity.values[kept, :2], known, position), smoothing_s
         )
         moved, speed = smooth.integral(times), smooth.at(times)
-        rest = _smoothed_columns(times, metres - moved, smoothing_s)
+        rest = smoothed_columns(times, metres - moved, smoothing_s)
         differing = np.median(np.abs(speed - self._spline.rate(times)), axis=0).max()
         if differing > LARGEST_VELOCITY_DIFFERENCE:
             return self._spline
         ends = (speed + rest.rate(times))[[0, -1]]
-        return _clamped(times, moved + rest.at(times), ends)
+        return clamped(times, moved + rest.at(times), ends)
 
     def _in_metres(self, velocity: np.ndarray, time_s: np.ndarray, position: Series) -> np.ndarray:
         """Rates of the two coordinates of the path (north, east at the first fix) of velocities E, N."""
@@ -299,62 +307,6 @@ class _Path:
             coefficients = coefficients / self._metres[j]
             coefficients[3] += self._origin[j]
             yield breaks, coefficients
-
-
-class _Spline:
-    """Cubic spline in time from its first knot, which keeps UTC's large numbers out of the polynomials."""
-
-    def __init__(self, start_s: float, breaks: np.ndarray, coefficients: np.ndarray) -> None:
-        self._start_s, self._breaks, self._coefficients = start_s, breaks, coefficients
-
-    def column(self, j: int, start_s: float) -> Polynomials:
-        """Breakpoints since ``start_s`` and coefficients of column j."""
-        return self._breaks + (self._start_s - start_s), self._coefficients[:, :, j]
-
-    def _polynomials(self) -> PPoly:
-        from scipy.interpolate import PPoly
-
-        return PPoly(self._coefficients, self._breaks)
-
-    def at(self, time_s: np.ndarray) -> np.ndarray:
-        """Columns at UTC times, shape (m, k)."""
-        return self._polynomials()(time_s - self._start_s)
-
-    def rate(self, time_s: np.ndarray) -> np.ndarray:
-        """Derivatives of the columns at UTC times, shape (m, k)."""
-        return self._polynomials()(time_s - self._start_s, 1)
-
-    def integral(self, time_s: np.ndarray) -> np.ndarray:
-        """Integrals of the columns from the first of the UTC times, shape (m, k)."""
-        whole = self._polynomials().antiderivative()(time_s - self._start_s)
-        return whole - whole[0]
-
-
-def _clamped(time_s: np.ndarray, values: np.ndarray, ends: np.ndarray) -> _Spline:
-    """Spline through the values, with these derivatives at the first and last time."""
-    from scipy.interpolate import CubicSpline
-
-    elapsed = time_s - time_s[0]
-    derivatives: Any = ((1, ends[0]), (1, ends[1]))  # scipy types it as a text
-    spline = CubicSpline(elapsed, values, bc_type=derivatives)
-    return _Spline(time_s[0], elapsed, spline.c)
-
-
-def _smoothed_columns(time_s: np.ndarray, values: np.ndarray, smoothing_s: float) -> _Spline:
-    """Smoothing spline of the columns; the penalty makes its cut-off 1 / smoothing_s at the median rate."""
-    from scipy.interpolate import CubicSpline, make_smoothing_spline
-
-    elapsed = time_s - time_s[0]
-    if smoothing_s == 0.0 or elapsed.size < FEWEST_FIXES:
-        spline = CubicSpline(elapsed, values, bc_type="natural")
-    else:
-        penalty = smoothing_s**4 / float(np.median(np.diff(elapsed)))
-        spline = make_smoothing_spline(elapsed, values, lam=penalty)
-    starts = elapsed[:-1]
-    coefficients = np.stack(
-        [spline(starts, 3) / 6.0, spline(starts, 2) / 2.0, spline(starts, 1), spline(starts)]
-    )
-    return _Spline(time_s[0], elapsed, coefficients)
 
 
 def _refuse_outliers(position: Series, metres: np.ndarray) -> None:

@@ -15,7 +15,8 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.motion.track import TrackMotion
 from navcore.motion.truth import Site, Truth
-from navcore.sensors.recorded import log_recording, log_series, recorded_window
+from navcore.sensors.log_files import log_recording, log_series
+from navcore.sensors.recorded import recorded_window
 from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
 

@@ -1,60 +1,31 @@
 """A recorded log as the reference: its error is what it says minus the true velocity of the motion."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
-from navcore.io.agreement import agreement_warnings
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
-from navcore.io.recording import Window, load, require_cover, shared_window
+from navcore.io.recording import Window, require_cover, shared_window
 from navcore.io.series import Recording, Series
 from navcore.io.stretches import stretch_warnings
 from navcore.motion.base import MotionParameters
 from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
+from navcore.sensors.corrections import corrections
 from navcore.sensors.log_errors.events import event_velocity
+from navcore.sensors.log_files import log_recording, log_series
 from navcore.sensors.reference import Reference, in_service
 from navcore.sensors.simulated_log import hold_time
-from navcore.sensors.true_state import horizontal_state, to_navigation
+from navcore.sensors.true_state import arm_velocity, horizontal_state, to_navigation
 
 SCHULER_PERIOD_S = 84.4 * 60.0
-_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "min_speed_mps", "file", "map", "speed"}
-
-
-def log_recording(reference: Reference) -> Recording:
-    """Read (or take from the cache) the files of the log; raises `InputError` with field ``file``."""
-    return load(reference.file or (), field="file", map_file=reference.map)
-
-
-def log_series(reference: Reference, recording: Recording) -> tuple[Series, bool]:
-    """Choose the speed that serves as reference.
-
-    Returns
-    -------
-    series : Series
-        Starboard and forward, or east and north.
-    along_axes : bool
-        True for starboard and forward.
-
-    Raises
-    ------
-    InputError
-        The files hold no speed.
-    """
-    wanted = {"water": recording.water, "ground": recording.ground}
-    series = wanted.pop(reference.speed) or next(iter(wanted.values()))
-    if series is not None:
-        return series, True
-    if recording.velocity is not None:
-        return recording.velocity, False
-    expected = Text("VBW, VHW, VTG or RMC sentences, or columns speed_mps, speed_kn or ve_mps and vn_mps")
-    allowed = Text("holds no speed: expected {expected}", expected=expected)
-    raise InputError(Fault("", "file", reference.file, allowed))
+_OF_FILES = {"file": None, "map": None, "clock_s": 0.0, "factor": 1.0, "lever_arm_m": (0.0, 0.0, 0.0)}
+"""Fields of a recorded log alone, with their defaults."""
+_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "min_speed_mps", "speed", *_OF_FILES}
 
 
 def _streams(reference: Reference) -> list[Series]:
@@ -139,7 +110,9 @@ def recorded_errors(
     if along_axes:
         if reference.frame == "enu" and recording.heading is not None:
             heading = heading_at(recording.heading, series.time_s[within])
-        values = to_navigation(values, heading)
+        values = to_navigation(values - arm_velocity(truth, time_s, reference.lever_arm_m), heading)
+    elif any(reference.lever_arm_m):
+        values = values - to_navigation(arm_velocity(truth, time_s, reference.lever_arm_m), heading)
     valid = series.valid[within] & in_service(reference.outage, time_s)
     valid &= ~(np.hypot(values[:, 0], values[:, 1]) < reference.min_speed_mps)
     error = values - velocity + event_velocity(reference.event, time_s)
@@ -170,7 +143,7 @@ def recording_notices(motion: MotionParameters, reference: Reference) -> tuple[s
     if reference.kind == "file":
         notices += _log_notices(motion, reference)
     else:
-        notices += _unused(reference, {"file": None, "map": None})
+        notices += _unused(reference, _OF_FILES)
     return tuple(dict.fromkeys(notices))
 
 
@@ -199,7 +172,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
     else:
         yield from speed_warnings(Recording(track.position, track.recording.velocity, recording.water))
         yield from course_warnings(track.recording)
-        yield from agreement_warnings(replace(track.recording, water=recording.water))
+        yield from (one.notice for one in corrections(moving, reference))
     if track is not None and not along_axes and series.file == track.position.file:
         yield Text(
             "{source}: the log comes from the same receiver as the track, its errors cancel in part",

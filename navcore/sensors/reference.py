@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field, create_model
 
-from navcore.foundation.parameters import FileName, Parameters, quantity
+from navcore.foundation.parameters import FileName, Parameters, bounded, quantity, vector_quantity
 from navcore.foundation.repeated import Repeated
 from navcore.foundation.text import Text
 from navcore.io.column_map import map_field
@@ -22,6 +22,11 @@ if TYPE_CHECKING:
     from navcore.sensors.log_errors.own import LogBias, LogDrift, LogNoise
     from navcore.sensors.log_errors.reading import LogReading
     from navcore.sensors.log_errors.water import Water
+
+
+_Metres = Annotated[float, bounded(unit="m", ge=-500.0, le=500.0)]
+RECORDED_ONLY = ("clock_s", "factor", "lever_arm_m")
+"""Corrections of a recorded log; a simulated one has none of them."""
 
 
 class Outage(Repeated):
@@ -83,7 +88,8 @@ class Reference(_Errors):
     ``lsb_mps``, with V, the ship's acceleration a, its yaw rate w and the velocity of the water ``V_water``
     (current and tide) taken ``delay_s`` earlier. What depends on V, and the noise, is smoothed with the
     time constant ``smoothing_s``. Events are added to that. The recorded one (``kind = "file"``) uses only
-    ``file``, ``speed``, ``frame``, ``event``, ``outage`` and ``min_speed_mps``.
+    ``file``, ``speed``, ``frame``, ``event``, ``outage``, ``min_speed_mps`` and the corrections of
+    `RECORDED_ONLY`.
     """
 
     outage: tuple[Outage, ...] = Field(
@@ -128,6 +134,35 @@ class Reference(_Errors):
             "Which speed of a recorded VBW sentence is used; the other one when the log lacks this."
         ),
         json_schema_extra={"label": "speed"},
+    )
+
+    clock_s: float = quantity(
+        0.0,
+        unit="s",
+        ge=-86400.0,
+        le=86400.0,
+        slider=(-120.0, 120.0),
+        label=Text("clock correction"),
+        help=Text("Added to the times of a recorded log, whose logger has a clock of its own."),
+    )
+    factor: float = quantity(
+        1.0,
+        ge=-100.0,
+        le=100.0,
+        slider=(0.5, 1.5),
+        label=Text("speed factor"),
+        help=Text("The speeds of a recorded log are multiplied by it."),
+    )
+    lever_arm_m: tuple[_Metres, _Metres, _Metres] = vector_quantity(
+        (0.0, 0.0, 0.0),
+        unit="m",
+        elements=(Text("starboard"), Text("forward"), Text("up")),
+        slider=(-100.0, 100.0),
+        label=Text("lever arm"),
+        help=Text(
+            "Where a recorded log (or the antenna that gives its velocity) stands, seen from the place that "
+            "the track is of: the velocity that turning and rolling give it there is taken off."
+        ),
     )
 
     def all_parts(self) -> tuple[LogPart, ...]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from navcore.motion.truth import AE, AN, HEADING, HEADING_RATE, VE, VN, Truth
+from navcore.motion.truth import AE, AN, HEADING, HEADING_RATE, PITCH_RATE, ROLL_RATE, VE, VN, Truth
 
 
 def horizontal_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -53,6 +53,30 @@ def heading_rate(truth: Truth, time_s: np.ndarray) -> np.ndarray:
     if truth.constant:
         return values[:, HEADING_RATE]
     return _linear(truth, time_s, HEADING_RATE)
+
+
+def arm_velocity(truth: Truth, time_s: np.ndarray, arm_m: tuple[float, float, float]) -> np.ndarray:
+    """Velocity that turning, pitching and rolling give to a place on board, small pitch and roll.
+
+    Parameters
+    ----------
+    truth, time_s
+        As of `horizontal_state`.
+    arm_m : tuple of float
+        Where the place is: starboard, forward, up, m.
+
+    Returns
+    -------
+    ndarray, shape (m, 2), or (1, 2) for a constant truth
+        Starboard, forward, m/s: w x r in the ship's axes.
+    """
+    starboard, forward, up = arm_m
+    values = truth.values
+    columns = (PITCH_RATE, ROLL_RATE, HEADING_RATE)
+    pitch, roll, turn = (
+        values[:, column] if truth.constant else _linear(truth, time_s, column) for column in columns
+    )
+    return np.column_stack([roll * up + turn * forward, -turn * starboard - pitch * up])
 
 
 def _linear(truth: Truth, time_s: np.ndarray, column: int) -> np.ndarray:

@@ -8,6 +8,7 @@ import pytest
 from schuler_bench.session.session import Session
 from tests.browser.driver import Bench
 from tests.nmea import START, gga, rmc, stamped, write
+from tests.turning_ship import late_log
 
 BEGIN_S = (datetime(2024, 5, 1, 10, tzinfo=UTC) - START).total_seconds()
 SPAN_S = 300
@@ -71,3 +72,20 @@ def test_two_nmea_files_and_a_csv_are_brought_to_a_run(
 def pictures(tmp_path: Path) -> Path:
     """Folder for pictures, to be looked at."""
     return tmp_path
+
+
+def test_a_correction_of_the_recordings_is_tried_and_made_by_a_click(bench: Bench, tmp_path: Path) -> None:
+    bench.put(late_log(tmp_path, 60.0), "Log", origin="a late log")
+    note = bench.page.locator(".sb-warning", has_text="reference.clock_s = -60")
+    note.wait_for()
+    bench.button("try the correction").click()
+    bench.page.locator(".sb-warning", has_text="with the correction.").wait_for()
+    before, after = (
+        float(part.split(" m")[0]) for part in note.inner_text().split("position error ")[1].split(", ")
+    )
+    assert after < 0.1 * before
+    bench.button("correct").click()
+    note.wait_for(state="detached")
+    assert bench.session.scenario.reference.clock_s == -60.0
+    bench.session.undo()
+    note.wait_for()

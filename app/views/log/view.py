@@ -2,10 +2,12 @@
 
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from navcore.sensors.corrections import Correction
 from navcore.sensors.log_errors.events import LogEvent
-from navcore.sensors.reference import Outage, Reference
+from navcore.sensors.reference import RECORDED_ONLY, Outage, Reference
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec
+from schuler_bench.session.correcting import corrected, correction_of, effect_lines
 from schuler_bench.session.log_fit import FittedLog, can_fit, fit_lines, fit_of, with_fitted_log
 from schuler_bench.shell import notices
 from schuler_bench.shell.palette import COPY_LOG, PASTE
@@ -21,6 +23,11 @@ _FIT_TOLD = Text(
 )
 _USE_TOLD = Text(
     "Replaces the recorded log by a simulated one with the fitted error, of any length. Undo brings it back."
+)
+CORRECTION, TRY, CORRECT = Text("recordings"), Text("try the correction"), Text("correct")
+_CORRECT_TOLD = Text(
+    "Track and log do not agree. Try runs with the correction and compares the position errors; correct sets "
+    "the field that is named."
 )
 _FIRST = 7
 """Fields of the log's model, in its order, that are shown without asking."""
@@ -70,7 +77,11 @@ class LogView(FieldsView):
             self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)
             self._fitted = gui.add_html("", order=21)
             self._use = gui.add_button(USE_FIT, color="gray", hint=_USE_TOLD, order=22, visible=False)
+            self._wrong = gui.add_html("", order=23, visible=False)
+            self._correct = gui.add_button_group(CORRECTION, (TRY, CORRECT), hint=_CORRECT_TOLD, order=24)
         self._last_fit: tuple[Scenario, FittedLog] | None = None
+        self._tried: tuple[Correction, list[str]] | None = None
+        self._correct.on_click(if_user(self._take_correction))
         self._fit.on_click(lambda _: self._fit_error())
         self._use.on_click(lambda _: self._use_fit())
         self._all.on_update(if_user(self.frame.refresh))
@@ -106,6 +117,32 @@ class LogView(FieldsView):
             if self._last_fit is not None:
                 session.change(with_fitted_log(session.scenario, self._last_fit[1].fit), None)
 
+    def _take_correction(self) -> None:
+        """Give the field its value, or run with it and say what it changes."""
+        session = self.session
+        title = Text("The correction cannot be made")
+        with session.lock:
+            scenario, run = session.scenario, session.run
+        found = correction_of(scenario)
+        if found is None:
+            return
+        with notices.told(self.frame.client, title, self.frame.refresh):
+            if self._correct.value == CORRECT:
+                with session.lock:
+                    session.change(corrected(session.scenario, found), None)
+            elif run is not None and run.scenario == scenario:
+                self._tried = found, effect_lines(run, found)
+                self.frame.refresh()
+
+    def _show_correction(self, scenario: Scenario) -> None:
+        """Show what of the recordings does not agree, and what its correction was found to change."""
+        found = correction_of(scenario)
+        self._wrong.visible = self._correct.visible = found is not None
+        if found is None:
+            return
+        tried = self._tried[1] if self._tried is not None and self._tried[0] == found else []
+        self._wrong.content = notices.note([found.notice, *tried], "warning")
+
     def _show_fit(self, scenario: Scenario) -> None:
         """Show the fit as long as it is of the scenario's own recordings."""
         self._fit.visible = can_fit(scenario)
@@ -120,9 +157,11 @@ class LogView(FieldsView):
         """Show the scenario's values; errors that it sets are always shown."""
         scenario = self.session.scenario
         self._show_fit(scenario)
+        self._show_correction(scenario)
         kind = scenario.reference.kind
-        choices = [spec for spec in self._specs if spec.kind == "choice"]
-        specs = {"none": [], "file": choices}.get(kind, self._specs)
+        recorded = [spec for spec in self._specs if spec.kind == "choice" or spec.path[1] in RECORDED_ONLY]
+        simulated = [spec for spec in self._specs if spec.path[1] not in RECORDED_ONLY]
+        specs = {"none": [], "file": recorded}.get(kind, simulated)
         first, more = specs[:_FIRST], specs[_FIRST:]
         self._all.visible = bool(more)
         if not self._all.value:
