@@ -3,6 +3,7 @@
 from navcore.design.designs import Designs
 from navcore.design.needed import MOST
 from navcore.design.shares import Share
+from navcore.study.robust import Robust
 from schuler_bench.cli.design_text import unstated
 from schuler_bench.cli.table import columns, number
 
@@ -24,6 +25,30 @@ def designs_text(designs: Designs) -> list[str]:
     lines += [f"{share.method.label()}: {_setting(share)}" for share in designs.methods]
     lines += [f"{name}: left out: {reason}" for name, reason in designs.left_out]
     return [*lines, *unstated(designs.assumed_zero)]
+
+
+def robust_text(found: Robust) -> list[str]:
+    """Lines: a row a method with its share in the scenario, over all points, and where it is worst."""
+    counts = "worst point" if found.quantile == 0.0 else f"{100.0 * found.quantile:g} % point"
+    rows = [["method", "as it stands %", "all points %", f"{counts} %", "missed most often there"]]
+    for one in found.methods:
+        missed = min(one.worst.limits, key=lambda limit: limit.met)
+        words = f"{missed.requirement.quantity} {number(missed.median)}" if missed.met < 1.0 else "-"
+        shares = (one.nominal.met, one.met, one.counted)
+        rows.append([one.method.label(), *(number(100.0 * share, 3) for share in shares), words])
+    best = found.methods[0]
+    where = ", ".join(f"{name} = {_value(value)}" for name, value in best.where.items())
+    lines = [f"{found.points} points, {found.seeds} seeds each with its own noise and constants", ""]
+    lines += [*columns(rows), "", f"{best.method.label()} is worst with {where}"]
+    if found.price > 0.0:
+        price = number(100.0 * found.price, 3)
+        lines.append(f"price of robustness: {price} % of the seeds of the scenario as it stands")
+    lines += ["", *(f"{one.method.label()}: {_setting(one.nominal)}" for one in found.methods)]
+    return [*lines, *(f"{name}: left out: {reason}" for name, reason in found.left_out)]
+
+
+def _value(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _alone(designs: Designs) -> list[str]:

@@ -10,7 +10,7 @@ from navcore.design.shares import Share, require_limits, share_of
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import kalman, tuned_methods
-from navcore.engine.ensemble import outcomes
+from navcore.engine.ensemble import Outcome, outcomes
 from navcore.engine.load import estimated_seconds
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.progress import part_of
@@ -122,7 +122,7 @@ def designs(
     stopped = early or (cancelled is not None and cancelled())
     if not found:
         raise _too_early(seeds)
-    shares = _judged(scenario, methods, found)
+    shares = tuple(sorted(judged(scenario, methods, found), key=lambda share: share.order))
     result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
     return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
 
@@ -148,7 +148,11 @@ def _too_early(seeds: int) -> StoppedError:
     )
 
 
-def _judged(scenario: Scenario, methods: Sequence[Method], found: Sequence[Any]) -> tuple[Share, ...]:
+def judged(
+    scenario: Scenario, methods: Sequence[Method], found: Sequence[tuple[Outcome, ...]]
+) -> tuple[Share, ...]:
+    """Judge each method by its outcomes, one a seed, in the order of the methods."""
     ship = Ship(scenario, True, TUNING_INTERVALS)
-    shares = [share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)]
-    return tuple(sorted(shares, key=lambda share: share.order))
+    return tuple(
+        share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)
+    )

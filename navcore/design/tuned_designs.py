@@ -8,6 +8,7 @@ taken.
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,12 +16,13 @@ import numpy as np
 from navcore.design.measures import Setting, measure, read_objective
 from navcore.design.pareto import LEFT_OUT
 from navcore.design.search import REFUSED, Effort, Search
-from navcore.design.shares import share_of
+from navcore.design.shares import Share, share_of
 from navcore.design.ship import Ship
 from navcore.design.vary import read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
 from navcore.engine.measures import begins_s
 from navcore.foundation.errors import InputError
+from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
 from navcore.quantities import HEADING, POSITION, QUANTITIES, TILT, VELOCITY, Quantity, limit_unit
@@ -41,6 +43,34 @@ _AXES = {TILT: (0, 1), VELOCITY: (3, 4), HEADING: (2,), POSITION: (5, 6)}
 """Components of each kind among `navcore.quantities.COMPONENTS`."""
 
 
+@dataclass(frozen=True)
+class Spread:
+    """Scenarios beside the one that is tuned, over which a setting has to hold too.
+
+    Attributes
+    ----------
+    scenarios : tuple of Scenario
+        Of other sensors, seas, latitudes; their methods do not count.
+    quantile : float
+        Which of all scenarios counts, by what a setting makes of them: 0 the worst, 0.5 the median.
+    """
+
+    scenarios: tuple[Scenario, ...] = ()
+    quantile: float = 0.0
+
+    def of_ratios(self, ratios: Sequence[float]) -> float:
+        """Value over the limit that counts: large is bad."""
+        return float(np.quantile(ratios, 1.0 - self.quantile, method="higher"))
+
+    def of_shares(self, shares: Sequence[float]) -> float:
+        """Share of seeds that counts: small is bad."""
+        return float(np.quantile(shares, self.quantile, method="lower"))
+
+
+NO_SPREAD = Spread()
+"""The scenario alone."""
+
+
 def kalman(scenario: Scenario) -> tuple[Method, ...]:
     """Give the Kalman filter as a method, if the scenario can carry one out."""
     method = Method(name="kalman", damping="kalman")
@@ -51,8 +81,12 @@ def tuned_methods(
     scenario: Scenario,
     progress: Callable[[float], None],
     cancelled: Callable[[], bool] | None,
+    spread: Spread = NO_SPREAD,
 ) -> tuple[list[Method], list[tuple[str, str]]]:
-    """Tune every network of the catalogue; also say for which there is no method, and why."""
+    """Tune every network of the catalogue; also say for which there is no method, and why.
+
+    With a spread the share that counts is that of all its scenarios and of the scenario itself.
+    """
     ids = [name for name in NETWORKS if name not in LEFT_OUT]
     candidates: list[tuple[str, list[Method]]] = []
     left_out: list[tuple[str, str]] = []
@@ -60,7 +94,7 @@ def tuned_methods(
         if cancelled is not None and cancelled():
             left_out += [(other, Text("the search was stopped before it")) for other in ids[k:]]
             break
-        found, reason = _candidates(scenario, name, cancelled)
+        found, reason = _candidates(scenario, name, cancelled, spread)
         if found:
             candidates.append((name, found))
         else:
@@ -68,23 +102,34 @@ def tuned_methods(
         progress(0.7 * (k + 1) / len(ids))
     methods = [method for _, found in candidates for method in found]
     numbers = range(SEARCHED, SEARCHED + SEARCH_SEEDS)
-    results = outcomes(scenario, methods, numbers, lambda f: progress(0.7 + 0.3 * f), cancelled)
-    if not results:
-        return [found[0] for _, found in candidates], left_out
-    ship, at = Ship(scenario, True, _INTERVALS), 0
-    best = []
+    everywhere = scenario, *spread.scenarios
+    shares: list[list[Share]] = []
+    for k, one in enumerate(everywhere):
+        span = 0.3 / len(everywhere)
+        part = part_of(progress, 0.7 + k * span, 0.7 + (k + 1) * span)
+        results = outcomes(one, methods, numbers, part, cancelled)
+        if not results:
+            return [found[0] for _, found in candidates], left_out
+        ship = Ship(one, True, _INTERVALS)
+        shares.append(
+            [share_of(Setting(ship, m), [each[i] for each in results]) for i, m in enumerate(methods)]
+        )
+    best, at = [], 0
     for _, found in candidates:
-        ranked = [
-            share_of(Setting(ship, method), [one[at + i] for one in results])
-            for i, method in enumerate(found)
-        ]
-        best.append(min(ranked, key=lambda share: share.order).method)
+        places = range(at, at + len(found))
+        best.append(methods[min(places, key=lambda i: _order(spread, [row[i] for row in shares]))])
         at += len(found)
     return best, left_out
 
 
+def _order(spread: Spread, shares: Sequence[Share]) -> tuple[float, float, float]:
+    """Key of a method by its shares in all scenarios, best first: what counts, then all of them."""
+    met, ratios = [share.met for share in shares], [share.order[1] for share in shares]
+    return -spread.of_shares(met), -float(np.mean(met)), spread.of_ratios(ratios)
+
+
 def _candidates(
-    scenario: Scenario, name: str, cancelled: Callable[[], bool] | None
+    scenario: Scenario, name: str, cancelled: Callable[[], bool] | None, spread: Spread = NO_SPREAD
 ) -> tuple[list[Method], str]:
     """Settings of a network worth a run, the most promising one first; else why there is none."""
     damping = "external" if scenario.reference.kind != "none" else "internal"
@@ -103,20 +148,32 @@ def _candidates(
     present = [default, *(default.model_copy(update={"network": one.network}) for one in own)]
     fields = default.network.design_fields()
     if fields:
-        present += _searched(other, fields, cancelled)
+        present += _searched(other, fields, cancelled, NO_SPREAD)
+    if fields and spread.scenarios:
+        present += _searched(other, fields, cancelled, spread)
     ship = Ship(other, True, _INTERVALS)
     stable = {method.network: method for method in present if not Setting(ship, method).instability}
     if not stable:
         return [], Setting(ship, default).instability
     ranked = sorted(stable.values(), key=lambda method: _largest_ratio(Setting(ship, method)))
+    if spread.scenarios:
+        ships = [ship, *(Ship(one, True, _INTERVALS) for one in spread.scenarios)]
+        robust = sorted(ranked, key=lambda m: spread.of_ratios([ratio_at(one, m) for one in ships]))
+        ranked = list(dict.fromkeys((robust[0], ranked[0], *robust[1:])))
     return ranked[:_CANDIDATES], ""
 
 
+def ratio_at(ship: Ship, method: Method) -> float:
+    """Largest quantity of a method over its limit, by the covariance; infinite where it grows."""
+    setting = Setting(ship, method)
+    return math.inf if setting.instability else _largest_ratio(setting)
+
+
 def _searched(
-    scenario: Scenario, fields: Sequence[str], cancelled: Callable[[], bool] | None
+    scenario: Scenario, fields: Sequence[str], cancelled: Callable[[], bool] | None, spread: Spread
 ) -> Iterator[Method]:
     varied = read_varied(scenario, [f"method.0.network.{field}" for field in fields])
-    search = _ByLimits(scenario, varied)
+    search = _ByLimits(scenario, varied, spread)
     search.cancelled = cancelled
     search.run(_EFFORT, None)
     if search.best is not None and search.best[0] < REFUSED:
@@ -124,13 +181,16 @@ def _searched(
 
 
 class _ByLimits(Search):
-    """Search for the least of the largest quantity over its limit."""
+    """Search for the least of the largest quantity over its limit, in the scenario or over a spread."""
 
-    def __init__(self, scenario: Scenario, varied: Sequence[Any]) -> None:
-        super().__init__([Ship(scenario, True, _INTERVALS)], varied, read_objective("tilt_rms"), ())
+    def __init__(self, scenario: Scenario, varied: Sequence[Any], spread: Spread) -> None:
+        others = (one.model_copy(update={"method": scenario.method}) for one in spread.scenarios)
+        ships = [Ship(one, True, _INTERVALS) for one in (scenario, *others)]
+        super().__init__(ships, varied, read_objective("tilt_rms"), ())
+        self._spread = spread
 
     def value(self, settings: Sequence[Setting]) -> float:
-        return _largest_ratio(settings[0])
+        return self._spread.of_ratios([_largest_ratio(setting) for setting in settings])
 
 
 def _largest_ratio(setting: Setting) -> float:
