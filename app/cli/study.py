@@ -7,12 +7,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, arg
 
 from navcore.foundation.errors import Fault, InputError
 from schuler_bench.cli.terminal import emit_result, say
+
+if TYPE_CHECKING:
+    from navcore.study.plan import Plan
+    from navcore.study.running import Engine
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,8 @@ class StudyCommand:
         Go on with the results in the folder: only what is missing is run.
     workers : int or None
         Runs at a time; by default one for each core.
+    scheduler : str or None
+        Address of a Dask scheduler, tcp://HOST:PORT, on whose workers the runs are carried out.
     hours : float or None
         Largest estimated time that is begun; by default 24.
     json : bool
@@ -41,6 +47,7 @@ class StudyCommand:
     out: Annotated[Path | None, arg(metavar="DIR")] = None
     resume: bool = False
     workers: Annotated[int | None, arg(metavar="N")] = None
+    scheduler: Annotated[str | None, arg(metavar="ADDRESS")] = None
     hours: Annotated[float | None, arg(metavar="H")] = None
     json: bool = False
     quiet: bool = False
@@ -62,20 +69,31 @@ class StudyCommand:
         if self.resume and self.out is None:
             raise InputError(Fault("--resume", "", None, "needs --out DIR, the folder of the results"))
         plan = plan_of(self.study)
-        require_affordable(plan, workers, self.hours)
-        with _folder(self.out) as path:
+        with self._engine(plan, workers) as (engine, at_a_time), _folder(self.out) as path:
+            require_affordable(plan, at_a_time, self.hours)
             folder = Folder(path, plan)
             with (
                 folder.opened(self.resume),
                 working(plan.study.title or "study", self.quiet, self.study) as (progress, stopped),
             ):
-                document = carry_out(plan, folder, workers, progress, stopped)
+                document = carry_out(plan, folder, at_a_time, progress, stopped, engine)
         emit_result(self.json, document, lambda: study_text(document))
         if document["status"] == "complete":
             return 0
         kept = f"; --out {self.out} --resume goes on" if self.out else ""
         say(f"{self.study}: stopped after {document['runs']} of {document['of']} runs{kept}")
         return 3
+
+    @contextmanager
+    def _engine(self, plan: Plan, workers: int) -> Iterator[tuple[Engine | None, int]]:
+        """Give what carries the runs out (None: this machine), and how many blocks at a time."""
+        if self.scheduler is None:
+            yield None, workers
+            return
+        from schuler_bench.jobs.study_cluster import study_cluster
+
+        with study_cluster(self.scheduler, plan) as engine:
+            yield engine, engine.workers
 
 
 @contextmanager

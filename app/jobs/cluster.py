@@ -73,6 +73,11 @@ class Cluster:
         return self._client is not None
 
     @property
+    def trouble(self) -> str:
+        """Why no job may be sent there; empty where one may, and before it has been tried."""
+        return "" if self.ready else self._told
+
+    @property
     def threads(self) -> int:
         """Threads of the workers that fit; 0 while no job may be sent there."""
         return sum(self._fitting.values()) if self.ready else 0
@@ -280,8 +285,14 @@ class Cluster:
             heard(number, fraction)
 
 
-def check_address(address: str | None) -> None:
+def check_address(address: str | None, option: str = "--cluster", command: str = "serve") -> None:
     """Refuse what is no address of a cluster; None is let pass.
+
+    Parameters
+    ----------
+    address : str or None
+    option, command : str
+        Named in faults.
 
     Raises
     ------
@@ -292,10 +303,10 @@ def check_address(address: str | None) -> None:
         return
     if not _ADDRESS.fullmatch(address):
         allowed = "must be tcp://HOST:PORT or tls://HOST:PORT, the address of a Dask scheduler"
-        raise InputError([Fault("serve", "--cluster", address, allowed)])
+        raise InputError([Fault(command, option, address, allowed)])
     if importlib.util.find_spec("distributed") is None:
         allowed = "needs the package distributed: pip install 'schuler-bench[cluster]'"
-        raise InputError([Fault("serve", "--cluster", address, allowed)])
+        raise InputError([Fault(command, option, address, allowed)])
 
 
 def _let_go(client: Client, futures: Sequence[Any]) -> None:

@@ -26,6 +26,8 @@ from navcore.study.plan import Plan, Setting
 Row = dict[str, Any]
 Stopped = Callable[[], bool]
 Result = MethodRun | Outcome
+Engine = Callable[[Plan, range, Stopped], Iterator[tuple[int, list[Row]]]]
+"""What carries runs out: `run_points`, here or on another machine."""
 
 
 def run_points(plan: Plan, numbers: Iterable[int], stopped: Stopped) -> Iterator[tuple[int, list[Row]]]:

@@ -11,7 +11,7 @@ from typing import Any
 from navcore.engine.drivers.common import Cancelled, Progress
 from navcore.study.plan import Plan
 from navcore.study.results import Folder
-from navcore.study.running import Row, run_points
+from navcore.study.running import Engine, Row, run_points
 from navcore.study.summary import summary
 
 _PART_S = 0.3
@@ -27,6 +27,7 @@ def carry_out(
     workers: int,
     progress: Progress | None = None,
     stopped: Cancelled | None = None,
+    engine: Engine | None = None,
 ) -> dict[str, Any]:
     """Run what is missing in a folder, join the parts and sum up.
 
@@ -40,6 +41,8 @@ def carry_out(
         Threads; the compiled kernels and the random numbers run without Python's lock.
     progress, stopped : callable, optional
         As of `navcore.engine.simulation.simulate`. What is complete when it stops is kept.
+    engine : callable, optional
+        Carries a block of runs out, ``workers`` of them at a time; by default here, by `run_points`.
 
     Returns
     -------
@@ -80,7 +83,7 @@ def carry_out(
                 if block is None:
                     return
                 rows, runs, began = [], 0, time.monotonic()
-                for _, some in run_points(plan, block, ended):
+                for _, some in (engine or run_points)(plan, block, ended):
                     rows += some
                     runs += 1
                     if time.monotonic() - began > _PART_S:
