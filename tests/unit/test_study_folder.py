@@ -163,7 +163,7 @@ def test_people_get_tables(study, capsys):
 
 
 def test_listed_studies_can_be_run(capsys):
-    assert {"latitudes", "sea-states"} <= {*studies()}
+    assert {"latitudes", "sea-states", "sensor-grades"} <= {*studies()}
     for name in studies():
         made = plan_of(name)
         require_affordable(made, 2, 1.0 / 60.0)
