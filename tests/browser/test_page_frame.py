@@ -180,3 +180,23 @@ def test_a_window_that_is_too_small_says_so(another: Another) -> None:
     assert "700 px" in told.inner_text() and box(told) == {"x": 0, "y": 0, "width": 390, "height": 844}
     bench.page.goto(f"{bench.url}?view=errors")
     assert not told.is_visible(), "one view alone fits any window"
+
+
+def test_what_is_scrolled_away_does_not_show_through_the_tabs(moving: Bench) -> None:
+    """Where a panel's tools stand beside its tabs, the panel reaches up behind these."""
+    moving.resize(SIZES[1])
+    moving.tab("Requirements")
+    moving.tab("Design")
+    moving.choose("show", "methods that meet the limits")
+    panel = moving.page.locator("[data-sb-up] .mantine-ScrollArea-viewport:visible").last
+    panel.evaluate("p => { p.firstElementChild.style.minHeight = '3000px'; p.scrollTop = 200; }")
+    cut = """p => {
+      const strip = p.closest('[data-dock-group]').querySelector('[data-dock-strip]').getBoundingClientRect();
+      const cut = parseFloat(getComputedStyle(p).clipPath.match(/inset\\(([\\d.]+)px/)?.[1] ?? 0);
+      return strip.bottom - p.getBoundingClientRect().top - cut;
+    }"""
+    moving.page.wait_for_function("p => p.dataset.sbScrolled !== undefined", arg=panel.element_handle())
+    assert panel.evaluate(cut) <= 1.0
+    panel.evaluate("p => { p.firstElementChild.style.minHeight = ''; p.scrollTop = 0; }")
+    moving.page.wait_for_function("p => p.dataset.sbScrolled === undefined", arg=panel.element_handle())
+    assert panel.evaluate("p => getComputedStyle(p).clipPath") == "none"

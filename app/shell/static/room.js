@@ -62,6 +62,11 @@
     area.removeAttribute("data-sb-up");
   }
 
+  // What is scrolled away goes behind the tabs, which stand over the panel where its tools are beside them (page.css).
+  addEventListener("scroll", ({ target }) => {
+    if (target instanceof Element && target.matches(VIEWPORT)) target.toggleAttribute("data-sb-scrolled", target.scrollTop > 0);
+  }, true);
+
   function fill(viewport) {
     if (viewport.getClientRects().length === 0) return; // of a tab that has just gone: the panel is another's now
     raise(viewport);
