@@ -35,10 +35,13 @@ class StudyCluster:
         Ready.
     address : str
         Named when it is lost.
+    plan : Plan
+        The study that travels with each block.
     """
 
-    def __init__(self, cluster: Cluster, address: str) -> None:
+    def __init__(self, cluster: Cluster, address: str, plan: Plan) -> None:
         self._cluster, self._address = cluster, address
+        self._study = to_toml(plan.study), plan.where
 
     @property
     def workers(self) -> int:
@@ -53,7 +56,8 @@ class StudyCluster:
         InputError
             The cluster stays away.
         """
-        item = to_toml(plan.study), plan.where, numbers.start, numbers.stop
+        del plan  # it is the one that this engine was made for
+        item = *self._study, numbers.start, numbers.stop
         while not stopped():
             try:
                 found = self._cluster.compute(_rows_of, [item], lambda _: None, stopped)
@@ -84,7 +88,7 @@ def study_cluster(address: str, plan: Plan) -> Iterator[StudyCluster]:
     try:
         if not _waited(lambda: cluster.ready or cluster.lost, lambda: False, _CONNECT_S) or not cluster.ready:
             raise _unreachable(address, cluster.trouble)
-        yield StudyCluster(cluster, address)
+        yield StudyCluster(cluster, address, plan)
     finally:
         cluster.close()
 

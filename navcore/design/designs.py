@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navcore.design.measures import TUNING_INTERVALS, Setting
+from navcore.design.measures import TUNING_INTERVALS
 from navcore.design.needed import Needed, needed
-from navcore.design.shares import Share, require_limits, share_of
+from navcore.design.shares import Share, require_limits, shares_of
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import kalman, tuned_methods
-from navcore.engine.ensemble import Outcome, outcomes
+from navcore.engine.ensemble import outcomes
 from navcore.engine.load import estimated_seconds
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.progress import part_of
@@ -122,7 +122,8 @@ def designs(
     stopped = early or (cancelled is not None and cancelled())
     if not found:
         raise _too_early(seeds)
-    shares = tuple(sorted(judged(scenario, methods, found), key=lambda share: share.order))
+    ship = Ship(scenario, True, TUNING_INTERVALS)
+    shares = tuple(sorted(shares_of(ship, methods, found), key=lambda share: share.order))
     result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
     return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
 
@@ -145,14 +146,4 @@ def _few(scenario: Scenario, methods: Sequence[Method], seeds: int) -> int:
 def _too_early(seeds: int) -> StoppedError:
     return StoppedError(
         Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
-    )
-
-
-def judged(
-    scenario: Scenario, methods: Sequence[Method], found: Sequence[tuple[Outcome, ...]]
-) -> tuple[Share, ...]:
-    """Judge each method by its outcomes, one a seed, in the order of the methods."""
-    ship = Ship(scenario, True, TUNING_INTERVALS)
-    return tuple(
-        share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)
     )

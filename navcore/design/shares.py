@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from navcore.design.measures import Setting, measure
+from navcore.design.ship import Ship
 from navcore.engine.ensemble import Outcome
 from navcore.engine.measures import begins_s, run_value
 from navcore.foundation.errors import Fault, InputError
@@ -160,6 +161,15 @@ def share_of(setting: Setting, outcomes: Sequence[Outcome]) -> Share:
         for k, (one, median) in enumerate(zip(requirements, medians, strict=True))
     )
     return Share(setting.method, full / count, *wilson(full, count), limits, count - int(ended.sum()))
+
+
+def shares_of(
+    ship: Ship, methods: Sequence[Method], found: Sequence[tuple[Outcome, ...]]
+) -> tuple[Share, ...]:
+    """Judge each method by its outcomes, one a seed, in the order of the methods."""
+    return tuple(
+        share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)
+    )
 
 
 def _values(setting: Setting, one: Requirement, outcomes: Sequence[Outcome]) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 from navcore.design.measures import Setting, measure, read_objective
 from navcore.design.pareto import LEFT_OUT
 from navcore.design.search import REFUSED, Effort, Search
-from navcore.design.shares import Share, share_of
+from navcore.design.shares import Share, shares_of
 from navcore.design.ship import Ship
 from navcore.design.vary import read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
@@ -32,7 +32,7 @@ from navcore.scenario.requirement import OF_THE_SETTING, Requirement
 
 SEARCH_SEEDS = 16
 _CANDIDATES = 3
-_INTERVALS = 96
+INTERVALS = 96
 """Of a run: coarse, for what a search sees is only a guide."""
 _EFFORT = Effort(5, 5, 40)
 _PEAK = 1.6
@@ -77,6 +77,12 @@ def kalman(scenario: Scenario) -> tuple[Method, ...]:
     return (method,) if not [*scenario.model_copy(update={"method": (method,)}).faults()] else ()
 
 
+def default_method(scenario: Scenario, name: str) -> Method:
+    """Give a network with its defaults as a method; raises ValueError where a parameter has none."""
+    damping = "external" if scenario.reference.kind != "none" else "internal"
+    return Method.model_validate({"name": name, "damping": damping, "network": {"id": name}})
+
+
 def tuned_methods(
     scenario: Scenario,
     progress: Callable[[float], None],
@@ -103,17 +109,14 @@ def tuned_methods(
     methods = [method for _, found in candidates for method in found]
     numbers = range(SEARCHED, SEARCHED + SEARCH_SEEDS)
     everywhere = scenario, *spread.scenarios
-    shares: list[list[Share]] = []
+    shares: list[tuple[Share, ...]] = []
     for k, one in enumerate(everywhere):
         span = 0.3 / len(everywhere)
         part = part_of(progress, 0.7 + k * span, 0.7 + (k + 1) * span)
         results = outcomes(one, methods, numbers, part, cancelled)
         if not results:
             return [found[0] for _, found in candidates], left_out
-        ship = Ship(one, True, _INTERVALS)
-        shares.append(
-            [share_of(Setting(ship, m), [each[i] for each in results]) for i, m in enumerate(methods)]
-        )
+        shares.append(shares_of(Ship(one, True, INTERVALS), methods, results))
     best, at = [], 0
     for _, found in candidates:
         places = range(at, at + len(found))
@@ -132,10 +135,8 @@ def _candidates(
     scenario: Scenario, name: str, cancelled: Callable[[], bool] | None, spread: Spread = NO_SPREAD
 ) -> tuple[list[Method], str]:
     """Settings of a network worth a run, the most promising one first; else why there is none."""
-    damping = "external" if scenario.reference.kind != "none" else "internal"
-    own = [m for m in scenario.method if not m.undamped and m.network.id == name and m.damping == damping]
     try:
-        default = Method.model_validate({"name": name, "damping": damping, "network": {"id": name}})
+        default = default_method(scenario, name)
         other = scenario.model_copy(update={"method": (default,)}).with_sensors()
         faults = list(other.faults())
         if faults:
@@ -145,19 +146,22 @@ def _candidates(
     except ValueError as error:
         return [], str(error)
     default = other.method[0]
+    own = [
+        m for m in scenario.method if not m.undamped and m.network.id == name and m.damping == default.damping
+    ]
     present = [default, *(default.model_copy(update={"network": one.network}) for one in own)]
     fields = default.network.design_fields()
     if fields:
         present += _searched(other, fields, cancelled, NO_SPREAD)
     if fields and spread.scenarios:
         present += _searched(other, fields, cancelled, spread)
-    ship = Ship(other, True, _INTERVALS)
+    ship = Ship(other, True, INTERVALS)
     stable = {method.network: method for method in present if not Setting(ship, method).instability}
     if not stable:
         return [], Setting(ship, default).instability
     ranked = sorted(stable.values(), key=lambda method: _largest_ratio(Setting(ship, method)))
     if spread.scenarios:
-        ships = [ship, *(Ship(one, True, _INTERVALS) for one in spread.scenarios)]
+        ships = [ship, *(Ship(one, True, INTERVALS) for one in spread.scenarios)]
         robust = sorted(ranked, key=lambda m: spread.of_ratios([ratio_at(one, m) for one in ships]))
         ranked = list(dict.fromkeys((robust[0], ranked[0], *robust[1:])))
     return ranked[:_CANDIDATES], ""
@@ -185,7 +189,7 @@ class _ByLimits(Search):
 
     def __init__(self, scenario: Scenario, varied: Sequence[Any], spread: Spread) -> None:
         others = (one.model_copy(update={"method": scenario.method}) for one in spread.scenarios)
-        ships = [Ship(one, True, _INTERVALS) for one in (scenario, *others)]
+        ships = [Ship(one, True, INTERVALS) for one in (scenario, *others)]
         super().__init__(ships, varied, read_objective("tilt_rms"), ())
         self._spread = spread
 

@@ -1,7 +1,6 @@
 """A recorded log as the reference: its error is what it says minus the true velocity of the motion."""
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -18,13 +17,13 @@ from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.corrections import corrections
 from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.log_files import log_recording, log_series
-from navcore.sensors.reference import Reference, in_service
+from navcore.sensors.reference import RECORDED_ONLY, Reference, in_service
 from navcore.sensors.simulated_log import hold_time
 from navcore.sensors.true_state import arm_velocity, horizontal_state, to_navigation
 
 SCHULER_PERIOD_S = 84.4 * 60.0
-_OF_FILES = {"file": None, "map": None, "clock_s": 0.0, "factor": 1.0, "lever_arm_m": (0.0, 0.0, 0.0)}
-"""Fields of a recorded log alone, with their defaults."""
+_OF_FILES = ("file", "map", *RECORDED_ONLY)
+"""Fields of a recorded log alone."""
 _RECORDED_FIELDS = {"kind", "frame", "event", "outage", "min_speed_mps", "speed", *_OF_FILES}
 
 
@@ -107,12 +106,13 @@ def recorded_errors(
     within = (elapsed >= 0.0) & (elapsed <= duration_s)
     time_s, values = elapsed[within], series.values[within]
     velocity, heading = horizontal_state(truth, time_s)
+    of_arm = arm_velocity(truth, time_s, reference.lever_arm_m)
     if along_axes:
         if reference.frame == "enu" and recording.heading is not None:
             heading = heading_at(recording.heading, series.time_s[within])
-        values = to_navigation(values - arm_velocity(truth, time_s, reference.lever_arm_m), heading)
-    elif any(reference.lever_arm_m):
-        values = values - to_navigation(arm_velocity(truth, time_s, reference.lever_arm_m), heading)
+        values = to_navigation(values - of_arm, heading)
+    else:
+        values = values - to_navigation(of_arm, heading)
     valid = series.valid[within] & in_service(reference.outage, time_s)
     valid &= ~(np.hypot(values[:, 0], values[:, 1]) < reference.min_speed_mps)
     error = values - velocity + event_velocity(reference.event, time_s)
@@ -187,10 +187,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
             gaps=gaps,
             hold_time=hold_time(series.interval_s),
         )
-    defaults = {
-        name: field.default for name, field in Reference.model_fields.items() if name not in _RECORDED_FIELDS
-    }
-    yield from _unused(reference, defaults)
+    yield from _unused(reference, [name for name in Reference.model_fields if name not in _RECORDED_FIELDS])
 
 
 def short_run_notices(motion: MotionParameters, recorded: bool, duration_s: float) -> list[str]:
@@ -219,8 +216,9 @@ def short_run_notices(motion: MotionParameters, recorded: bool, duration_s: floa
     ]
 
 
-def _unused(reference: Reference, defaults: dict[str, Any]) -> list[str]:
-    names = [f"reference.{name}" for name, default in defaults.items() if getattr(reference, name) != default]
+def _unused(reference: Reference, fields: Iterable[str]) -> list[str]:
+    given = (name for name in fields if getattr(reference, name) != Reference.model_fields[name].default)
+    names = [f"reference.{name}" for name in given]
     verb = "is" if len(names) == 1 else "are"
     return (
         [

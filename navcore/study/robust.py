@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import Any
 
 import numpy as np
 
-from navcore.design.designs import judged
-from navcore.design.shares import Share, require_limits, wilson
+from navcore.design.measures import TUNING_INTERVALS
+from navcore.design.shares import Share, require_limits, shares_of, wilson
 from navcore.design.ship import Ship
-from navcore.design.tuned_designs import Spread, kalman, ratio_at, tuned_methods
+from navcore.design.tuned_designs import INTERVALS, Spread, default_method, kalman, ratio_at, tuned_methods
 from navcore.engine.ensemble import outcomes
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.progress import part_of
@@ -28,7 +27,6 @@ _SEARCHED = 6
 """Points beside the scenario for which a network is tuned: from the easiest to the hardest."""
 _TUNING_SHARE = 0.6
 """Of the time that a design takes."""
-_INTERVALS = 96
 _LEFT_ALONE = ("method", "requirement", "run.seed")
 
 
@@ -156,10 +154,8 @@ def robust_designs(
         It was cancelled.
     """
     require_limits(scenario)
-    _require(study, seeds, quantile)
-    given = scenario.canonical()
-    plan = Plan(study.model_copy(update={"scenario": given, "set": (), "fidelity": None, "seeds": 1}))
-    places = [*_settings(plan)]
+    plan = _laid_over(scenario, study, seeds, quantile)
+    places = [plan.at(number)[0] for number in range(plan.runs)]
     points = [plan.scenario_of(place) for place in places]
     share, left_out = 0.0 if as_set else _TUNING_SHARE, ()
     methods: tuple[Method, ...] = scenario.method
@@ -176,7 +172,7 @@ def robust_designs(
         results = outcomes(one, methods, range(seeds), part, cancelled)
         if len(results) < seeds:
             raise StoppedError(Fault("", "--over", study.title, Text("stopped before all points were run")))
-        rows.append(judged(one, methods, results))
+        rows.append(shares_of(Ship(one, True, TUNING_INTERVALS), methods, results))
     shares = (
         _robust(k, rows, seeds, Spread(quantile=quantile), lambda at: plan.values(places[at]))
         for k in range(len(methods))
@@ -185,7 +181,8 @@ def robust_designs(
     return Robust(len(points), seeds, quantile, ordered, left_out)
 
 
-def _require(study: Study, seeds: int, quantile: float) -> None:
+def _laid_over(scenario: Scenario, study: Study, seeds: int, quantile: float) -> Plan:
+    """Number the points, each of which is one run of the plan."""
     faults = []
     if seeds < 1:
         faults.append(Fault("", "--seeds", seeds, Text("must be >= 1")))
@@ -198,24 +195,20 @@ def _require(study: Study, seeds: int, quantile: float) -> None:
             if any(f"{field}.".startswith(f"{block}.") for block in _LEFT_ALONE):
                 allowed = Text("must not be a method, a requirement or the seed: these are what is judged")
                 faults.append(Fault("", f"factor.{i}.field", field, allowed))
-    points = study.draws * int(np.prod([len(one.values) for one in study.factor if one.values], dtype=object))
-    if points > MOST_POINTS:
-        allowed = Text("are {points} points; at most {most} are judged", points=points, most=MOST_POINTS)
-        faults.append(Fault("", "factor", None, allowed))
     if faults:
         raise InputError(faults)
-
-
-def _settings(plan: Plan) -> Iterator[tuple[int, ...]]:
-    """Every draw with every combination of the grid."""
-    yield from product(range(plan.study.draws), *(range(len(factor.values)) for factor in plan.grid))
+    given = scenario.canonical()
+    plan = Plan(study.model_copy(update={"scenario": given, "set": (), "fidelity": None, "seeds": 1}))
+    if plan.runs > MOST_POINTS:
+        allowed = Text("are {points} points; at most {most} are judged", points=plan.runs, most=MOST_POINTS)
+        raise InputError(Fault("", "factor", None, allowed))
+    return plan
 
 
 def _searched(scenario: Scenario, points: Sequence[Scenario]) -> Iterator[Scenario]:
     """A few points from the easiest to the hardest, by what a common network makes of the limits there."""
-    damping = "external" if scenario.reference.kind != "none" else "internal"
-    common = Method.model_validate({"name": "common", "damping": damping, "network": {"id": "classic2"}})
-    ordered = sorted(points, key=lambda point: ratio_at(Ship(point, True, _INTERVALS), common))
+    common = default_method(scenario, "classic2")
+    ordered = sorted(points, key=lambda point: ratio_at(Ship(point, True, INTERVALS), common))
     for place in np.unique(np.linspace(0, len(ordered) - 1, _SEARCHED).round().astype(int)):
         yield ordered[place]
 
