@@ -126,6 +126,11 @@ class Output(Parameters):
     )
 
 
+def series_column(name: str, hours: float) -> str:
+    """Column of an error at an epoch in the results."""
+    return f"{name}@{hours:g}h"
+
+
 class Study(Parameters):
     """A study: the whole file."""
 

@@ -10,12 +10,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+import numpy as np
+
 from navcore.foundation.kernel_files import replacing
 from navcore.foundation.out import refused, writing
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
 from navcore.scenario.file import names_files, scenario_hash
 from navcore.study.file import to_toml
+from navcore.study.model import series_column
 from navcore.study.plan import Plan
 from navcore.study.running import Row
 
@@ -133,6 +136,19 @@ class Folder:
         with replacing(self._parts / f"{first:012d}-{end:012d}.parquet") as file:
             self._write(file, [pa.Table.from_pylist(rows, self._schema)])
 
+    def take(self, runs: bytes) -> None:
+        """Put the runs of a ``runs.parquet`` of the same study, stopped earlier, in the place of parts."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        table = pq.read_table(pa.BufferReader(runs))
+        numbers = table["run"].to_numpy()
+        ends = [*(np.flatnonzero(np.diff(numbers) > 1) + 1), len(numbers)] if len(numbers) else []
+        for first, end in zip([0, *ends], ends, strict=False):
+            named = f"{numbers[first]:012d}-{numbers[end - 1] + 1:012d}.parquet"
+            with replacing(self._parts / named) as file:
+                self._write(file, [table.slice(first, end - first)])
+
     def join(self) -> Path:
         """Write ``runs.parquet`` from the parts, in the order of the runs; at no time all of it in memory."""
         with self._placing(RUNS_FILE) as file:
@@ -186,7 +202,8 @@ def schema(plan: Plan) -> pa.Schema:
     for k in range(len(plan.scenario.requirement)):
         fields += [(f"requirement_{k}", number), (f"requirement_{k}_met", flag)]
     output = plan.study.output
-    fields += [(f"{name}@{hours:g}h", number) for hours in output.epochs_h for name in output.series]
+    names = (series_column(name, hours) for hours in output.epochs_h for name in output.series)
+    fields += [(name, number) for name in names]
     return pa.schema(fields)
 
 

@@ -21,6 +21,7 @@ from navcore.quantities import NAMES, QUANTITIES, limit_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
+from navcore.study.model import series_column
 from navcore.study.plan import Plan, Setting
 
 Row = dict[str, Any]
@@ -164,7 +165,7 @@ def _judged(plan: Plan, scenario: Scenario, result: Result) -> Row:
             reached = _distance(result.t_s, nearest, hours * HOUR) <= scenario.run.output_step_s
             for name in output.series:
                 value = float(result.rows[nearest, NAMES.index(name)]) if reached else math.inf
-                row[f"{name}@{hours:g}h"] = _finite(value)
+                row[series_column(name, hours)] = _finite(value)
     return row
 
 

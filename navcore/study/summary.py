@@ -11,12 +11,15 @@ from navcore.design.shares import wilson
 from navcore.engine.measures import versions
 from navcore.quantities import QUANTITIES
 from navcore.scenario.fields import SCHEMA
+from navcore.study.model import series_column
 from navcore.study.plan import Plan
 from navcore.study.sensitivity import Sensitivity
 
 QUANTILES, _NAMES = (0.05, 0.5, 0.95), ("q05", "median", "q95")
 MOST_CELLS = 500
 """Combinations of the grid that are summed up one by one; all are in the rows."""
+WORST = 5
+"""Runs of each method that are named for a metric, the worst first."""
 
 
 def summary(plan: Plan, runs: Path, status: Literal["complete", "stopped"], done: int) -> dict[str, Any]:
@@ -49,8 +52,10 @@ def summary(plan: Plan, runs: Path, status: Literal["complete", "stopped"], done
     for key in plan.study.output.metrics:
         values = rows.column(key)
         _depending(rows, key, values, sensitivity, found[0])
+        _worst(plan, rows, key, values, found[0])
         for group, methods in zip(groups, found, strict=True):
             _measured(rows, key, values, group, methods)
+    _over_time(plan, rows, found[0])
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "title": plan.study.title,
@@ -60,6 +65,8 @@ def summary(plan: Plan, runs: Path, status: Literal["complete", "stopped"], done
         "versions": versions(),
         "methods": [*found[0].values()],
     }
+    if plan.study.output.series:
+        document["epochs_h"] = [*plan.study.output.epochs_h]
     if len(groups) > 1:
         document["cells"] = [
             {"factors": factors, "methods": [*methods.values()]}
@@ -113,10 +120,8 @@ def _measured(
     chosen = np.nan_to_num(values[group], nan=np.inf)
     for k, document in methods.items():
         own = chosen[method == k]
-        there = own[np.isfinite(own)]
-        quantiles = np.quantile(there, QUANTILES).tolist() if there.size else [None] * len(QUANTILES)
-        document["metrics"][key] = dict(zip(_NAMES, quantiles, strict=True))
-        document["metrics"][key]["without"] = int(own.size - there.size)
+        document["metrics"][key] = _quantiles(own)
+        document["metrics"][key]["without"] = int(np.isinf(own).sum())
     if QUANTITIES[key].kind is None or len(methods) < 2:
         return
     starts = np.flatnonzero(np.diff(run, prepend=-1))
@@ -138,6 +143,48 @@ def _depending(
         for name, found in {"tornado": sensitivity.tornado, "sobol": sensitivity.sobol}.items():
             if one := found(chosen, own):
                 document.setdefault(name, {})[key] = one
+
+
+def _worst(plan: Plan, rows: _Rows, key: str, values: np.ndarray, methods: dict[int, dict[str, Any]]) -> None:
+    """Add to each method its runs with the largest values of a metric, those without a value first."""
+    if QUANTITIES[key].kind is None:
+        return
+    chosen = np.nan_to_num(values, nan=np.inf)
+    for k, document in methods.items():
+        own = np.flatnonzero(rows.method == k)
+        if own.size > WORST:
+            own = own[np.argpartition(chosen[own], own.size - WORST)[-WORST:]]
+        own = own[np.lexsort((rows.run[own], -chosen[own]))]
+        document.setdefault("worst", {})[key] = [
+            _named(plan, rows, int(one), float(chosen[one])) for one in own
+        ]
+
+
+def _named(plan: Plan, rows: _Rows, place: int, value: float) -> dict[str, Any]:
+    """One run: its number, factors, status and value."""
+    number = int(rows.run[place])
+    setting, _ = plan.at(number)
+    told = {"run": number, "factors": plan.values(setting), "status": str(rows.status[place])}
+    return told | {"value": float(value) if np.isfinite(value) else None}
+
+
+def _over_time(plan: Plan, rows: _Rows, methods: dict[int, dict[str, Any]]) -> None:
+    """Add to each method the quantiles of the errors that are kept, at the epochs."""
+    for name in plan.study.output.series:
+        columns = [rows.column(series_column(name, hours)) for hours in plan.study.output.epochs_h]
+        for k, document in methods.items():
+            own = rows.method == k
+            found = [_quantiles(np.nan_to_num(column[own], nan=np.inf)) for column in columns]
+            document.setdefault("series", {})[name] = {
+                quantile: [one[quantile] for one in found] for quantile in _NAMES
+            }
+
+
+def _quantiles(values: np.ndarray) -> dict[str, Any]:
+    """Quantiles of the finite values; None where there are none."""
+    there = values[np.isfinite(values)]
+    found = np.quantile(there, QUANTILES).tolist() if there.size else [None] * len(QUANTILES)
+    return dict(zip(_NAMES, found, strict=True))
 
 
 def _share(count: int, runs: int) -> dict[str, float]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navcore.foundation.cores import cores
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.motion.sea import fully_developed_peak_period
 from navcore.motion.seagoing import SeagoingMotion
@@ -146,10 +146,7 @@ def _planned(scenario: Scenario, key: str, axis: _Axis) -> tuple[tuple[float, ..
     values = axis.values
     while True:
         shown = (*sorted({*values, axis.present}),)
-        assigned = [axis.assigned(value) for value in shown]
-        if len(axis.fields) == 1:
-            assigned = [one for (one,) in assigned]
-        factor = Factor(name=key, field=axis.fields, values=(*assigned,), labels=(*map(repr, shown),))
+        factor = _factor(key, axis, shown)
         try:
             plan = Plan(Study(scenario=data, factor=(factor,)))
         except InputError as error:
@@ -158,6 +155,27 @@ def _planned(scenario: Scenario, key: str, axis: _Axis) -> tuple[tuple[float, ..
         if plan.seconds() + waves_s <= _LONGEST_S or len(values) <= _FEWEST:
             return shown, plan
         values = values[::2]
+
+
+def _factor(key: str, axis: _Axis, shown: tuple[float, ...]) -> Factor:
+    assigned = [axis.assigned(value) for value in shown]
+    if len(axis.fields) == 1:
+        assigned = [one for (one,) in assigned]
+    return Factor(name=key, field=axis.fields, values=(*assigned,), labels=(*map(repr, shown),))
+
+
+def swept_factor(scenario: Scenario, key: str) -> Factor:
+    """Factor of a study that takes the values of a sweep; its labels are numbers in the sweep's unit.
+
+    Raises
+    ------
+    InputError
+        The scenario has nothing of the kind to vary.
+    """
+    axis = _AXES[key](scenario)
+    if isinstance(axis, str):
+        raise InputError(Fault("", key, None, axis))
+    return _factor(key, axis, (*sorted({*axis.values, axis.present}),))
 
 
 def _latitude(scenario: Scenario) -> _Axis | str:

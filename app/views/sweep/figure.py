@@ -10,17 +10,11 @@ from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
 from schuler_bench.plots import style
 from schuler_bench.plots.plotly_data import PlotlyFigure, figure
+from schuler_bench.plots.varied import SWEPT
 
 if TYPE_CHECKING:
     from navcore.study.sweep import Sweep
 
-_AXES = {
-    "latitude": (Text("latitude"), Text("latitude (°)")),
-    "log_bias": (Text("error of the log"), Text("constant error of the log (m/s)")),
-    "grade": (Text("grade of the sensors"), Text("errors of gyros and accelerometers, times their own")),
-    "sea": (Text("sea state"), Text("significant wave height (m)")),
-}
-"""Title of a plot and label of its axis, in the order of the plots."""
 _LEFT_PX, _RIGHT_PX, _TOP_PX, _BOTTOM_PX = 68, 18, 58, 46
 _BETWEEN_ROWS_PX = 72.0
 _WIDE = 20.0
@@ -71,7 +65,7 @@ def sweep_figure(
     gap = _BETWEEN_ROWS_PX / max(aspect * width_px - _TOP_PX - layout["margin"]["b"], 2.0 * _BETWEEN_ROWS_PX)
     share = style.column(inner_px)
     data: list[dict[str, Any]] = []
-    for place, key in enumerate(_AXES):
+    for place, key in enumerate(SWEPT):
         suffix = "" if place == 0 else str(place + 1)
         left, upper = place % 2 == 0, place < 2
         domains = (
@@ -90,7 +84,7 @@ def sweep_figure(
 def refusals(known: Mapping[str, Sweep]) -> tuple[str, ...]:
     """Reasons why something is not varied that have no room in the plots."""
     return tuple(
-        Text("{title} is not varied: {words}", title=_AXES[key][0], words=found.words)
+        Text("{title} is not varied: {words}", title=SWEPT[key][0], words=found.words)
         for key, found in known.items()
         if len(found.words) > _LONGEST_WORDS
     )
@@ -107,7 +101,7 @@ def _panel(
     named: bool,
 ) -> list[dict[str, Any]]:
     """Add the axes, title and present value of a plot to a layout; return its curves."""
-    title, label = _AXES[key]
+    title, label = SWEPT[key]
     layout[f"xaxis{suffix}"] = x = style.axis(label, domain=domains[0], anchor=f"y{suffix}", nticks=7)
     layout[f"yaxis{suffix}"] = y = style.axis(domain=domains[1], anchor=f"x{suffix}", nticks=5)
     if found is None or not found.metrics:
@@ -149,7 +143,7 @@ def _panel(
         hover = Text(
             "<b>{method}</b><br>{label} %{{x:.4g}}<br>%{{y:.4g}} {unit}<extra></extra>",
             method=style.plain(name),
-            label=_AXES[key][0],
+            label=SWEPT[key][0],
             unit=unit,
         )
         line = style.lines(name, index) | {"mode": "lines+markers", "marker": {"size": 5}}

@@ -1,0 +1,34 @@
+"""What a sweep or a study varies, in words: labels of its quantities and of their values."""
+
+from collections.abc import Sequence
+
+from navcore.foundation.notation import symbol
+from navcore.foundation.text import Text
+from schuler_bench.plots.units import number
+
+SWEPT = {
+    "latitude": (Text("latitude"), Text("latitude (°)")),
+    "log_bias": (Text("error of the log"), Text("constant error of the log (m/s)")),
+    "grade": (Text("grade of the sensors"), Text("errors of gyros and accelerometers, times their own")),
+    "sea": (Text("sea state"), Text("significant wave height (m)")),
+}
+"""Quantity of `navcore.study.sweep.KEYS`, alone and as the label of its axis."""
+
+
+def varied_label(column: str) -> str:
+    """Label of the axis of a factor: of a sweep's quantity in words, of a field its parameter's symbol."""
+    if column in SWEPT:
+        return SWEPT[column][1]
+    return symbol(column.rsplit(".", 1)[-1]) if "." in column else column
+
+
+def value_texts(values: Sequence[float | str]) -> list[str]:
+    """Values of a factor: numbers, also those that stand as texts in the results, in three digits."""
+    return [_value_text(value) for value in values]
+
+
+def _value_text(value: float | str) -> str:
+    try:
+        return number(float(value), 3)
+    except ValueError:
+        return str(value)
