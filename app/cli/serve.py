@@ -37,6 +37,8 @@ class ServeCommand:
     cluster : str or None
         Scheduler of a Dask cluster, tcp://HOST:PORT, that computes heavy jobs (verification, bands, budgets,
         searches); also SCHULER_CLUSTER. Needs the extra: schuler-bench[cluster].
+    lessons : Path or None
+        Folder of lessons of one's own, Markdown files (docs/teaching.md), shown after those of the program.
     open : bool
         Open the page in the browser.
     """
@@ -50,6 +52,7 @@ class ServeCommand:
     frame_origin: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="URL")] = ()
     workers: Annotated[int, arg(metavar="N")] = 1
     cluster: Annotated[str | None, arg(metavar="ADDRESS")] = None
+    lessons: Annotated[Path | None, arg(metavar="DIR")] = None
     open: bool = False
 
     def execute(self) -> int:
@@ -59,6 +62,10 @@ class ServeCommand:
         from schuler_bench.serve import serve
         from schuler_bench.workers import serve_with_workers
 
+        if self.lessons is not None:
+            from schuler_bench.views.learn.own import use_lessons
+
+            use_lessons(self.lessons)
         token = find_token(self.token, self.token_file, self.generate_token, os.environ)
         named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()
         cluster = self.cluster or os.environ.get(CLUSTER) or None

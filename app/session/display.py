@@ -71,7 +71,7 @@ class Display(BaseModel):
     flipped : bool
         The baseline is shown in the place of the present run.
     theme : str
-        Of the whole page.
+        Colours of the whole page; "opposite": dark where the system is light, and light where it is dark.
     size : str
         Of type and lines; "presentation": readable from the back of a room, with few controls.
     budget : str
@@ -89,6 +89,20 @@ class Display(BaseModel):
         Objectives on the axes of the Pareto fronts: of `AXES`.
     swept : str
         Quantity that the tab "Sweep" shows: of `SWEPT`.
+    study : str
+        What the tab "Study" carries out: a listed study, "uploaded", or "" for the scenario itself.
+    study_x, study_y : str
+        What is varied of the scenario itself.
+    study_seeds : int
+        Runs at each of its points.
+    study_metric, study_method : str
+        What of the results is shown; where they do not have it, the first of theirs.
+    study_shows : str
+        As pictures, or as tables with the worst runs.
+    lesson : str
+        Id of the open lesson; "": none.
+    lesson_step, lesson_shown : int
+        Its step, and how often "Show me" was pressed: pages that watch follow both.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -116,7 +130,7 @@ class Display(BaseModel):
     window_from_h: Annotated[float, Field(ge=0.0, le=1e5)] = 0.0
     window_to_h: Annotated[float | None, Field(ge=0.0, le=1e5)] = None
     flipped: bool = False
-    theme: Literal["light", "dark"] = "light"
+    theme: Literal["system", "opposite", "light", "dark"] = "system"
     size: Literal["normal", "presentation"] = "normal"
     budget: Literal["limits", "steady", "run"] = "limits"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
@@ -126,6 +140,16 @@ class Display(BaseModel):
     front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
     front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"
     swept: Annotated[str, _one_of(SWEPT)] = "tilt_rms_arcsec"
+    study: Annotated[str, Field(max_length=80)] = ""
+    study_x: Annotated[str, Field(max_length=80)] = "latitude"
+    study_y: Annotated[str, Field(max_length=80)] = "log_bias"
+    study_seeds: Annotated[int, Field(ge=1, le=200)] = 10
+    study_metric: Annotated[str, _one_of((*SWEPT, "met"))] = "tilt_rms_arcsec"
+    study_method: Annotated[str, Field(max_length=300)] = ""
+    study_shows: Literal["pictures", "tables"] = "pictures"
+    lesson: Annotated[str, Field(max_length=255)] = ""
+    lesson_step: Annotated[int, Field(ge=0, le=1000)] = 0
+    lesson_shown: Annotated[int, Field(ge=0)] = 0
 
     @property
     def enlarged(self) -> bool:

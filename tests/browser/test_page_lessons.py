@@ -1,12 +1,17 @@
 """Each lesson is worked through as a reader would: shown, answered wrongly, answered rightly, to its end."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from navcore.engine.simulation import simulate
-from schuler_bench.views.learn.lessons import Lesson, lessons
+from schuler_bench.views.learn.lessons import OWN, Lesson, lessons
 from schuler_bench.views.learn.names import named
+from schuler_bench.views.learn.own import use_lessons
 from schuler_bench.views.learn.view import spec_at
 from tests.answers import names_in, right_answer
+from tests.browser.conftest import Another
 from tests.browser.driver import Bench
 
 SECTION = ".sb-lesson:not(.sb-question):not(.sb-below)"
@@ -117,6 +122,40 @@ def test_a_lesson_is_worked_by_keyboard_alone(learner: Bench) -> None:
         heading(learner, lessons()[4].steps[step].title)
     # the HTML was replaced; the focus is where it was
     learner.page.wait_for_function("() => document.activeElement?.dataset?.command === 'lesson next'")
+
+
+def test_a_teachers_lesson_is_followed_by_two_pages_that_watch(
+    fresh: Bench, another: Another, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(OWN, "")
+    monkeypatch.delenv(OWN)
+    guide = Path(__file__).parents[2] / "docs" / "teaching.md"
+    text = re.search(r"^````markdown\n(.*?)^````$", guide.read_text(), re.DOTALL | re.MULTILINE).group(1)
+    (tmp_path / "log.md").write_text(text)
+    try:
+        (lesson,) = use_lessons(tmp_path)
+        watching = [another(1280, 720).open(f"s/{fresh.session_id}/") for _ in range(2)]
+        for page in watching:
+            page.tab("Method", "Poles")
+        fresh.tab("Learn")
+        fresh.button("Present").click()
+        for page in watching:
+            page.page.get_by_text("watch").first.wait_for()
+        press(fresh, "open 0")  # the list is made anew after it
+        press(fresh, "list")
+        press(fresh, f"open {len(lessons()) - 1}")
+        press(fresh, "next")
+        for page in (fresh, *watching):
+            heading(page, lesson.steps[1].title)
+            page.page.wait_for_function("look.inFront", arg=["Learn"])
+        show_me(fresh, lesson, 1)
+        for page in watching:
+            page.page.wait_for_function("look.inFront", arg=["Errors"])
+            page.page.locator(f"{SECTION} .sb-live").first.wait_for()
+            assert page.page.evaluate(_LIVE) == fresh.page.evaluate(_LIVE)
+            assert not page.page.get_by_text("press Show me").is_visible()
+    finally:
+        lessons.cache_clear()
 
 
 def test_what_no_lesson_knows_is_ignored(learner: Bench) -> None:

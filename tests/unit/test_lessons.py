@@ -39,7 +39,6 @@ from schuler_bench.views.explain.view import (
 from schuler_bench.views.learn.lessons import (
     Lesson,
     Question,
-    Step,
     holds,
     is_right,
     lessons,
@@ -305,6 +304,7 @@ def test_a_file_that_is_no_lesson_is_refused_with_its_place(old: str, new: str, 
 
 def test_a_lesson_may_play_in_a_preset() -> None:
     lesson = read_lesson("one", ONE)
-    assert lesson.steps == (Step(title="First", text="Text with $x$ and {{schuler.period}}."),)
+    (step,) = lesson.steps
+    assert (step.title, step.text) == ("First", "Text with $x$ and {{schuler.period}}.")
     assert isinstance(lesson.scenario_of(0), Scenario)
     assert lesson.scenario_of(0).method[1].name == "classic2"

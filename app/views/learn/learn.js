@@ -16,6 +16,10 @@
     const asked = event.target instanceof Element && event.target.closest(".sb-lesson [data-command]");
     if (asked) pressed = asked.dataset.command;
   });
+  // Who goes on elsewhere is not called back.
+  addEventListener("focusin", ({ target }) => {
+    if (target.dataset?.command !== pressed) pressed = "";
+  });
   window.schuler.changed(() => {
     if (pressed === "" || document.activeElement !== document.body) return;
     const again = [...document.querySelectorAll(".sb-lesson [data-command]")];

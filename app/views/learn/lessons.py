@@ -1,4 +1,4 @@
-"""Lessons: read from ``assets/lessons/*.md``, checked, and turned into what the page shows.
+"""Lessons: read from ``assets/lessons/*.md`` and a folder of one's own, and turned into what the page shows.
 
 A file begins with TOML between two lines ``+++``: ``title``, ``about`` (one sentence), and the scenario it
 plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown
@@ -19,12 +19,14 @@ with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present
 """
 
 import operator
+import os
 import re
 import tomllib
 from collections.abc import Callable
 from contextlib import suppress
 from copy import deepcopy
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -38,6 +40,8 @@ from navcore.scenario.model import Scenario
 from schuler_bench.views.learn.names import named
 
 _FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
+_HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
+_PLACE = re.compile(r"\(at line (\d+), column \d+\)|\(at end of document\)")
 _FENCE = re.compile(r"^```toml (action|question)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)
 _MATH = re.compile(r"\$\$(.+?)\$\$|\$(.+?)\$", re.DOTALL)
 _NAME = re.compile(r"\{\{([a-z0-9_.]+)\}\}")
@@ -53,7 +57,8 @@ _SIGNS: dict[str, Callable[[float, float], bool]] = {
 }
 MISSING = Text("(press Show me)")
 """Stands where the present run has no such number."""
-
+OWN = "SCHULER_LESSONS"
+"""In the environment: a folder of lessons beside those of the program."""
 
 _T = TypeVar("_T")
 
@@ -100,12 +105,15 @@ class Step(_Part):
         What its button does.
     question : Question or None
         What it asks.
+    line : int
+        Of its heading in the file.
     """
 
     title: str
     text: str
     action: Action | None = None
     question: Question | None = None
+    line: int = 0
 
 
 class Lesson(_Part):
@@ -148,7 +156,7 @@ class Lesson(_Part):
 
 @lru_cache(maxsize=1)
 def lessons() -> tuple[Lesson, ...]:
-    """All lessons that come with the product, in the order of the numbers that begin their files' names.
+    """All lessons: those of the program by the numbers of their files, then those of the folder `OWN` names.
 
     Raises
     ------
@@ -156,7 +164,12 @@ def lessons() -> tuple[Lesson, ...]:
         A file is no lesson.
     """
     files = sorted(asset_path("lessons").glob("*.md"), key=lambda file: int(file.stem.partition("-")[0]))
-    return tuple(read_lesson(file.stem, file.read_text(encoding="utf-8")) for file in files)
+    own = os.environ.get(OWN)
+    more = sorted(Path(own).glob("*.md")) if own else []
+    return tuple(
+        read_lesson(file.stem if file in files else file.name, file.read_text(encoding="utf-8"))
+        for file in (*files, *more)
+    )
 
 
 def read_lesson(id: str, text: str) -> Lesson:
@@ -165,45 +178,71 @@ def read_lesson(id: str, text: str) -> Lesson:
     Raises
     ------
     InputError
-        It is none; the fault says where.
+        It is none; the fault says in which line.
     """
+    text = text.replace("\r\n", "\n")
     match = _FRONT.match(text)
     if match is None:
-        raise InputError(Fault(id, "", None, Text("must begin with TOML between two lines +++")))
-    heading, *parts = re.split(r"^## (.+)$", match.group(2), flags=re.MULTILINE)
-    if heading.strip() or not parts:
+        raise InputError(Fault(at_line(id, 1), "", None, Text("must begin with TOML between two lines +++")))
+    headings = [*_HEADING.finditer(text, match.start(2))]
+    if not headings or text[match.start(2) : headings[0].start()].strip():
         raise InputError(
-            Fault(id, "", None, Text('must have its text in steps, each under a heading "## ..."'))
+            Fault(
+                at_line(id, line_of(text, match.start(2))),
+                "",
+                None,
+                Text('must have its text in steps, each under a heading "## ..."'),
+            )
         )
-    steps = [_step(id, title, body) for title, body in zip(parts[::2], parts[1::2], strict=True)]
-    front = _toml(id, "", match.group(1))
-    return _checked(id, "", lambda: Lesson(id=id, steps=tuple(steps), **front))
+    ends = [*(heading.start() for heading in headings[1:]), len(text)]
+    steps = [_step(id, text, heading, end) for heading, end in zip(headings, ends, strict=True)]
+    front = _toml(id, 2, match.group(1))
+    return _checked(id, 2, lambda: Lesson(id=id, steps=tuple(steps), **front))
 
 
-def _step(id: str, title: str, body: str) -> Step:
+def at_line(id: str, line: int) -> str:
+    """Place of a fault."""
+    return Text("{file}, line {line}", file=id, line=line)
+
+
+def line_of(text: str, place: int) -> int:
+    """Number of the line, from 1, in which a place of a text stands."""
+    return text.count("\n", 0, place) + 1
+
+
+def _step(id: str, text: str, heading: re.Match[str], end: int) -> Step:
     blocks: dict[str, Any] = {}
-    for kind, toml in _FENCE.findall(body):
+    for fence in _FENCE.finditer(text, heading.end(), end):
+        kind, line = fence.group(1), line_of(text, fence.start())
         if kind in blocks:
-            raise InputError(Fault(id, title, kind, Text("must stand once in a step")))
-        blocks[kind] = _toml(id, title, toml)
-    text = _FENCE.sub("", body).strip()
-    return _checked(id, title, lambda: Step(title=title.strip(), text=text, **blocks))
+            raise InputError(Fault(at_line(id, line), kind, None, Text("must stand once in a step")))
+        blocks[kind] = _toml(id, line + 1, fence.group(2))
+    body = _FENCE.sub("", text[heading.end() : end]).strip()
+    line = line_of(text, heading.start())
+    return _checked(id, line, lambda: Step(title=heading.group(1).strip(), text=body, line=line, **blocks))
 
 
-def _toml(id: str, where: str, text: str) -> dict[str, Any]:
+def _toml(id: str, first: int, text: str) -> dict[str, Any]:
+    """Read TOML that begins in a line of the file."""
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(Fault(id, where, None, Text("is not valid TOML: {error}", error=error))) from None
+        words = str(error)
+        place = _PLACE.search(words)
+        line = first + (int(place.group(1)) - 1 if place and place.group(1) else text.count("\n"))
+        words = _PLACE.sub("", words).strip()
+        raise InputError(
+            Fault(at_line(id, line), "", None, Text("is not valid TOML: {error}", error=words))
+        ) from None
 
 
-def _checked(id: str, where: str, make: Callable[[], _T]) -> _T:
+def _checked(id: str, line: int, make: Callable[[], _T]) -> _T:
     try:
         return make()
     except ValidationError as error:
         first = error.errors()[0]
-        at = ".".join(map(str, (where, *first["loc"])))
-        raise InputError(Fault(id, at, first.get("input"), first["msg"])) from None
+        field = ".".join(map(str, first["loc"]))
+        raise InputError(Fault(at_line(id, line), field, first.get("input"), first["msg"])) from None
 
 
 # ------------------------------------------------------------ showing

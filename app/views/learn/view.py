@@ -34,8 +34,7 @@ class LearnView(View):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._lock = threading.RLock()
-        self._lesson: int | None = None
-        self._step = 0
+        self._followed = self._shown_step
         self._given: dict[tuple[int, int], str] = {}
         self._run: Run | None = None
         self._live: Scenario | None = None
@@ -49,6 +48,23 @@ class LearnView(View):
             self._places = [gui.add_html("", order=order) for order in (0, 50, 60)]
             self._front = gui.add_html("", order=70)
         self._section = Section(gui, tab, self.frame.editor.edit, 1.0)
+
+    @property
+    def _lesson(self) -> int | None:
+        """Place of the open lesson; all pages of a session show the same."""
+        ids = [lesson.id for lesson in lessons()]
+        wanted = self.session.display.lesson
+        return ids.index(wanted) if wanted in ids else None
+
+    @property
+    def _step(self) -> int:
+        lesson = self._current()
+        return 0 if lesson is None else min(self.session.display.lesson_step, len(lesson.steps) - 1)
+
+    @property
+    def _shown_step(self) -> tuple[str, int, int]:
+        display = self.session.display
+        return display.lesson, display.lesson_step, display.lesson_shown
 
     @property
     def leads(self) -> int:
@@ -78,16 +94,14 @@ class LearnView(View):
         if act is None or (rest and not rest.strip()) or (what in ("open", "step") and not rest.isdigit()):
             return
         with self.session.lock, self._lock:
-            led = self.leads
             act()
             self._show(None)
-            if led != self.leads:
-                self.frame.refresh()
 
     def _go(self, lesson: int | None, step: int) -> None:
-        if lesson is not None and not (lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps)):
-            return
-        self._lesson, self._step = lesson, step
+        if lesson is None:
+            self.frame.show(lesson="", lesson_step=0)
+        elif lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps):
+            self.frame.show(lesson=lessons()[lesson].id, lesson_step=step)
 
     def _show_me(self) -> None:
         lesson, action = self._current(), self._action()
@@ -96,17 +110,29 @@ class LearnView(View):
         scenario, session = self._scenario(), self.session
         self._live = None
         session.change(scenario, None, origin=self._origin(lesson), selected=action.method)
-        if action.display:
-            session.show(None, **action.display)
-        self._asked += 1
-        data = f'data-count="{self._asked}" data-tabs="{escape("|".join(action.tabs))}"'
-        self._front.content = Text('<div id="sb-front" hidden {data}></div>', data=data)
+        session.show(None, **action.display, lesson_shown=session.display.lesson_shown + 1)
 
     def _answer(self, given: str) -> None:
         if self._lesson is not None and given and len(given) < 40:
             self._given[self._lesson, self._step] = given
 
     # ------------------------------------------------------------ showing
+
+    def follow_display(self) -> None:
+        """Show the session's lesson and step; bring to the front what they are about."""
+        before, self._followed = self._followed, self._shown_step
+        if before == self._followed:
+            return
+        self._show(self.frame.editor.moved)
+        action, tabs = self._action(), list[str]()
+        if self.frame.commands.watching and before[:2] != self._followed[:2] and self._lesson is not None:
+            tabs.append(self.title)
+        if before[2] != self._followed[2] and action is not None:
+            tabs += action.tabs
+        if tabs:
+            self._asked += 1
+            data = f'data-count="{self._asked}" data-tabs="{escape("|".join(tabs))}"'
+            self._front.content = Text('<div id="sb-front" hidden {data}></div>', data=data)
 
     def follow_scenario(self) -> None:
         """Show the lesson, and its sliders with the scenario's values."""
