@@ -92,7 +92,7 @@ def film(bench: Bench, take: Film) -> None:
         bench.settle()
         bench.close_notices()
     page.locator("body").press("d")
-    page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
+    page.wait_for_selector("#sb-theme[data-theme=opposite]", state="attached")
     take.shoot(1800, "Press D in a dim room, ? for the keys, Ctrl+K for everything")
 
 

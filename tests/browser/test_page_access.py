@@ -10,7 +10,7 @@ from PIL import Image
 
 from schuler_bench.plots.style import INK, method_color
 from schuler_bench.shell.layout import layout_for
-from schuler_bench.views.appearance.view import DARK
+from schuler_bench.views.appearance.view import COLORS
 from tests import dark_page as theme
 from tests.browser.driver import SWEEP, Bench
 from tests.browser.fields import label_of
@@ -86,7 +86,7 @@ def test_keys_on_a_control_do_not_move_the_camera(moving: Bench) -> None:
     moving.press("network.zeta")
     page.get_by_role("tab", name="Method", exact=True).press("ArrowDown")
     page.locator("body").press("d")
-    page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
+    page.wait_for_selector("#sb-theme[data-theme=opposite]", state="attached")
     page.evaluate("() => document.activeElement.blur()")
     page.keyboard.press("ArrowUp")
     assert page.evaluate("() => window.reached") == ["ArrowUp"]
@@ -108,11 +108,11 @@ def has(found: np.ndarray, color: theme.Color) -> bool:
 
 def test_the_whole_page_turns_dark_and_methods_keep_their_colours(moving: Bench) -> None:
     page, before, ground = moving.page, moving.run, theme.shown("#FFFFFF", "dark")
-    for wanted in ("dark", "light"):  # by the key there and back
+    for wanted in ("opposite", "system"):  # by the key there and back
         page.locator("body").press("d")
         page.wait_for_selector(f"#sb-theme[data-theme={wanted}]", state="attached")
     moving.tab("View")
-    page.locator(f"[id='{moving.id(DARK)}']").click(force=True)
+    moving.choose(COLORS, "dark")
     page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
     assert moving.session.display.theme == "dark"
     moving.settle()
@@ -126,6 +126,25 @@ def test_the_whole_page_turns_dark_and_methods_keep_their_colours(moving: Bench)
     text = max(theme.contrast((r, g, b), ground) for r, g, b in np.unique(controls.round(2), axis=0))
     assert text > 0.8 * theme.contrast(theme.shown(INK, "dark"), ground)
     assert moving.run == before
+
+
+def test_the_page_is_dark_where_the_system_is(moving: Bench) -> None:
+    page = moving.page
+
+    def filtered() -> str:
+        return page.evaluate("() => getComputedStyle(document.documentElement).filter")
+
+    try:
+        assert filtered() == "none"
+        page.emulate_media(color_scheme="dark")
+        assert filtered().startswith("invert")
+        page.locator("body").press("d")  # the other way round
+        page.wait_for_selector("#sb-theme[data-theme=opposite]", state="attached")
+        assert filtered() == "none"
+        page.emulate_media(color_scheme="light")
+        assert filtered().startswith("invert")
+    finally:
+        page.emulate_media(color_scheme="light")
 
 
 # ------------------------------------------------------------ explanations

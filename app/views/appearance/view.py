@@ -5,7 +5,7 @@ In presentation size the panels are enlarged by the style sheet (presentation.cs
 cursor. Of the left tabs the one that leads (`schuler_bench.shell.view.View.leads`) is shown alone.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -20,7 +20,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, Tab, View, if_user
 from schuler_bench.views.appearance.document import FORMATS, Export, Sheet
 
-DARK, PRESENTATION, LANGUAGE = Text("dark page"), Text("presentation size"), Text("language")
+COLORS, PRESENTATION, LANGUAGE = Text("colours of the page"), Text("presentation size"), Text("language")
 """Labels; ``language`` is also the name of the command, its argument a language such as "zh-CN"."""
 _RULES = (Path(__file__).parent / "static" / "presentation.css").read_text(encoding="utf-8")
 _INVERT = 0.93
@@ -30,6 +30,14 @@ DARK_CSS = f"html{{--sb-look:invert({_INVERT}) hue-rotate(180deg);background:#ff
 
 The root's own filter leaves fixed elements where they are; those of other elements would not.
 """
+_WHERE_DARK = "(prefers-color-scheme:dark)"
+_THEMES = {
+    "system": f"@media {_WHERE_DARK}{{{DARK_CSS}}}",
+    "opposite": f"@media not all and {_WHERE_DARK}{{{DARK_CSS}}}",
+    "light": "",
+    "dark": DARK_CSS,
+}
+"""Rules of each theme; the browser knows what the system is set to."""
 _ROW = Text(
     '<div class="sb-row sb-lecture" role="toolbar" aria-label="Presentation">'
     '<button class="sb-do" data-command="size" aria-pressed="true" '
@@ -42,7 +50,7 @@ _ROW = Text(
 def dark_style(frame: Frame, display: Display) -> str:
     """Colours of the theme, and its name for the scripts."""
     del frame
-    css = DARK_CSS if display.theme == "dark" else ""
+    css = _THEMES[display.theme]
     return f'<div id="sb-theme" hidden data-theme="{display.theme}"></div><style>{css}</style>'
 
 
@@ -57,16 +65,18 @@ def size_style(frame: Frame, display: Display) -> str:
 
 @dataclass(frozen=True)
 class Look:
-    """One choice of the display with two values.
+    """One choice of the display that a key turns over.
 
     Attributes
     ----------
     field : str
         Of `schuler_bench.session.display.Display`.
-    values : (str, str)
-        Off, on.
+    others : mapping of str to str
+        Value -> what the key makes of it.
     label, hint : str
-        Of its switch.
+        Of its control.
+    words : mapping of str to str
+        Value -> its words in a list; empty: a switch from the first value to the second.
     command : (str, str, str)
         Name of the command that turns it over, its title, and its key.
     style : callable
@@ -74,9 +84,10 @@ class Look:
     """
 
     field: str
-    values: tuple[str, str]
+    others: Mapping[str, str]
     label: str
     hint: str
+    words: Mapping[str, str]
     command: tuple[str, str, str]
     style: Callable[[Frame, Display], str]
 
@@ -84,20 +95,27 @@ class Look:
 LOOKS = (
     Look(
         "theme",
-        ("light", "dark"),
-        DARK,
-        Text("Dark: for a dim room. Light: for a projector and print. Key: D."),
+        {"system": "opposite", "opposite": "system", "light": "dark", "dark": "light"},
+        COLORS,
+        Text("Dark: for a dim room. Light: for a projector and print. Key: D turns them over."),
+        {
+            "system": Text("as the system"),
+            "opposite": Text("not as the system"),
+            "light": Text("light"),
+            "dark": Text("dark"),
+        },
         ("theme", Text("Dark or light page"), "D"),
         dark_style,
     ),
     Look(
         "size",
-        ("normal", "presentation"),
+        {"normal": "presentation", "presentation": "normal"},
         PRESENTATION,
         Text(
             "Large type and wide lines on the whole page, for a projector, and only the controls of the "
             "open lesson or of the selected method. Key: L."
         ),
+        {},
         ("size", Text("Presentation size on or off"), "L"),
         size_style,
     ),
@@ -122,12 +140,17 @@ class Looks:
             frame.commands.register(name, lambda _, look=look: self._turn_over(look), title, key)
 
     def build(self) -> None:
-        """Make the switches, in the present container."""
+        """Make the controls, in the present container."""
+        gui = self._frame.gui
         self._switches: list[Any] = []
         for order, look in enumerate(LOOKS, start=31):
-            switch = self._frame.gui.add_checkbox(look.label, False, hint=look.hint, order=order)
-            switch.on_update(if_user(lambda look=look: self._turn_over(look)))
-            self._switches.append(switch)
+            if look.words:
+                box: Any = gui.add_dropdown(look.label, (*look.words.values(),), hint=look.hint, order=order)
+                box.on_update(if_user(lambda look=look, box=box: self._choose(look, str(box.value))))
+            else:
+                box = gui.add_checkbox(look.label, False, hint=look.hint, order=order)
+                box.on_update(if_user(lambda look=look: self._turn_over(look)))
+            self._switches.append(box)
 
     def show(self, display: Display) -> None:
         """Give the page its looks; in presentation size bring the tab to the front that leads since."""
@@ -135,15 +158,19 @@ class Looks:
             content = look.style(self._frame, display)
             if style.content != content:
                 style.content = content
-            switch.value = getattr(display, look.field) == look.values[1]
+            value = getattr(display, look.field)
+            switch.value = look.words[value] if look.words else value == [*look.others][1]
         leading = max(self._frame.views(), key=lambda view: view.leads)
         before, self._leading = self._leading, leading.leads if display.enlarged else 0
         if self._leading > before:
             self._frame.commands.ask_page("front", leading.title)
 
     def _turn_over(self, look: Look) -> None:
-        on = getattr(self._frame.session.display, look.field) == look.values[1]
-        self._frame.show(**{look.field: look.values[not on]})
+        now = getattr(self._frame.session.display, look.field)
+        self._frame.show(**{look.field: look.others[now]})
+
+    def _choose(self, look: Look, words: str) -> None:
+        self._frame.show(**{look.field: next(v for v, said in look.words.items() if said == words)})
 
 
 class PageLanguage:
