@@ -48,6 +48,7 @@ _SCRIPTS = (
     "boxes",
     "paste",
     "access",
+    "play",
     "cursor",
     "pick",
     "handle",

@@ -72,6 +72,7 @@ class Palette:
                 lambda _: self._share("link-view"),
                 Text("Share this view: a link that opens these tabs"),
             ),
+            Command("share-embed", lambda _: self._share("embed")),
             Command("no-tab", self._tell_no_tab, watcher=True),
             Command("no-view", self._tell_no_view, watcher=True),
             Command(PRESENT, lambda _: self._present(), Text("Present: drive alone, others watch")),

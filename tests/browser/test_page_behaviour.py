@@ -304,3 +304,22 @@ def test_a_preset_opens(bench: Bench, name: str) -> None:
     bench.tab("Metrics")
     table = "names => names.every(name => document.querySelector('.sb-table')?.innerText.includes(name))"
     bench.page.wait_for_function(table, arg=names)
+
+
+def test_a_slider_plays_to_its_end_and_stops_at_a_key(moving: Bench) -> None:
+    page = moving.page
+    row = page.locator('[data-sb-kind="slider"]', has=moving.slider("network.zeta"))
+    row.hover()
+    button = page.locator(".sb-animate")
+    assert button.get_attribute("aria-label").startswith("Play: ")
+    before, run = moving.value("network.zeta"), moving.run
+    button.click()
+    page.wait_for_function("run => Number(document.getElementById('sb-run').dataset.run) >= run + 3", arg=run)
+    page.keyboard.press("Escape")
+    moving.settle()
+    assert before < moving.value("network.zeta") < 2.0
+    assert button.get_attribute("aria-label").startswith("Play: ")
+    button.click()
+    moving.wait_until(lambda: moving.value("network.zeta") == 2.0, seconds=30.0)
+    page.wait_for_function("() => document.querySelector('.sb-animate').ariaLabel.startsWith('Play')")
+    assert moving.session.undo()

@@ -40,7 +40,28 @@
     }
     if (wanted && wanted.dataset.sbAlone === undefined) wanted.dataset.sbAlone = asked;
     if (wanted || told) document.getElementById("sb-veil")?.remove();
+    if (wanted) offer();
   }
+
+  // One click copies what another page needs to show this view: a frame with a copy of the present state. In a frame it
+  // is not offered.
+  function offer() {
+    if (window.top !== window || document.getElementById("sb-embed") !== null) return;
+    const title = "Copy the HTML of a frame that shows this view as it is now";
+    const button = window.schuler.element("button", "Embed", { id: "sb-embed", class: "sb-do", title });
+    button.addEventListener("click", () => window.schuler.command("share-embed"));
+    document.body.append(button);
+  }
+
+  window.schuler.embed = async (id) => {
+    const query = `?view=${encodeURIComponent(asked)}`;
+    const link = new URL(`../${id}/${query}`, location.origin + location.pathname).href;
+    const name = document.title.replace(/["<>&]/g, "");
+    await window.schuler.copy(`<iframe src="${link}" title="${name}" width="960" height="540" style="border:0"></iframe>`);
+    const button = document.getElementById("sb-embed");
+    button.textContent = "Copied";
+    setTimeout(() => (button.textContent = "Embed"), 2000);
+  };
 
   setInterval(show, 100);
   // Ours and viser's keys act on what is not to be seen here; what the browser does by itself goes on.

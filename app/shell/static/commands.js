@@ -37,6 +37,7 @@
   }
 
   Object.assign(window.schuler, {
+    copy: copyText,
     // Every one of these is carried out, in order.
     command: (name, ...words) => ask(name, words),
     // Of these, for what changes continuously, the next of the same name replaces one that is not yet sent.
@@ -141,16 +142,23 @@
     return `?tab=${front.map((tab) => encodeURIComponent(window.schuler.english(tab.textContent))).join()}`;
   }
 
+  // Only a page that came over https, or from this computer, may write to the clipboard by itself.
+  async function copyText(text) {
+    if (navigator.clipboard) return navigator.clipboard.writeText(text);
+    const box = element("textarea", text);
+    document.body.append(box);
+    box.select();
+    document.execCommand("copy");
+    box.remove();
+  }
+
   function showLink(id, query = "") {
     const link = new URL(`../${id}/${query}`, location.origin + location.pathname).href;
     const input = element("input", "", { readonly: "", value: link, "aria-label": "Link to this state" });
     const copy = element("button", "Copy the link", { class: "sb-do" });
     const done = element("span", "", { role: "status" });
     copy.addEventListener("click", async () => {
-      input.select();
-      // Only a page that came over https, or from this computer, may write to the clipboard by itself.
-      if (navigator.clipboard) await navigator.clipboard.writeText(link);
-      else document.execCommand("copy");
+      await copyText(link);
       done.textContent = " Copied.";
     });
     const told = "Whoever opens this link gets a copy of the present state, under an address of their own. What you " +
@@ -184,6 +192,7 @@
     keys: showKeys,
     link: (id) => showLink(id),
     "link-view": (id) => showLink(id, tabsInFront()),
+    embed: (id) => window.schuler.embed?.(id),
   };
   Object.assign(window.schuler, {
     element,

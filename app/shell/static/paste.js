@@ -24,8 +24,7 @@
     const done = element("span", "", { role: "status" });
     async function write() {
       shown.select();
-      if (navigator.clipboard) await navigator.clipboard.writeText(text);
-      else document.execCommand("copy");
+      await window.schuler.copy(text);
       done.textContent = " Copied.";
     }
     again.addEventListener("click", write);

@@ -156,6 +156,15 @@ def test_an_address_opens_tabs_and_one_view_alone(window: Bench, visitor: Bench)
     titles = page.locator(".js-plotly-plot:visible .annotation-text").all_text_contents()
     assert titles
     speaks(visitor, "\n".join(titles))
+    # one click copies a frame that shows this view of a copy of the state
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    embed = page.locator("#sb-embed")
+    word = embed.inner_text()
+    embed.click()
+    page.wait_for_function("word => document.getElementById('sb-embed').textContent !== word", arg=word)
+    copied = page.evaluate("() => navigator.clipboard.readText()")
+    source = re.fullmatch(r'<iframe src="([^"]+)\?view=bode" title="[^"]+" [^>]+></iframe>', copied).group(1)
+    assert source != visitor.url and source.split("/s/")[0] == visitor.url.split("/s/")[0].rstrip("/")
 
 
 def test_presentation_size_is_large_folded_and_whole(window: Bench) -> None:
