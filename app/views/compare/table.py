@@ -15,6 +15,7 @@ from schuler_bench.plots.units import rounded
 from schuler_bench.session.pins import Pin
 from schuler_bench.session.requirements import asked
 from schuler_bench.session.shown import Window, edited
+from schuler_bench.views.design.limits import design_text
 from schuler_bench.views.requirements.table import overall
 
 MEASURED = {
@@ -56,6 +57,8 @@ class Line:
         Requirements there are.
     missed : tuple of str
         Labels of those that it misses.
+    setting : str
+        Parameters of the method's network.
     """
 
     pin: Pin | None
@@ -64,6 +67,7 @@ class Line:
     numbers: dict[str, float]
     asked: int = 0
     missed: tuple[str, ...] = ()
+    setting: str = ""
 
     def key(self, column: str) -> tuple[bool, float, str]:
         """By what it is sorted: what is not known comes last."""
@@ -119,7 +123,8 @@ def _line(
     missed = tuple(verdict.quantity.label for verdict in limits if not verdict.passed[place])
     if limits:
         numbers["verdict"] = float(len(missed))
-    return Line(pin, color, method.method.name, numbers, len(limits), missed)
+    setting = design_text(method.method)
+    return Line(pin, color, method.method.name, numbers, len(limits), missed, setting)
 
 
 def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: bool = True) -> str:
@@ -134,7 +139,7 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
     baseline : int or None
         Id of the pin with which numbers are compared.
     buttons : bool
-        False for a file: its headings sort nothing.
+        False for a file: its headings sort nothing, and it shows what the page tells beneath the pointer.
     """
     column, falling = by.removeprefix("-"), by.startswith("-")
     ordered = sorted(lines, key=lambda line: line.key(column), reverse=falling)
@@ -147,7 +152,7 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
     marks = {column: " ▾" if falling else " ▴"} if buttons else {}
     head = [_head(name, title, marks.get(name, ""), buttons) for name, title in COLUMNS.items()]
     head.append(cell(Text("note"), tag="th"))
-    rows = (_row(line, best, baseline) for line in ordered)
+    rows = (_row(line, best, baseline, buttons) for line in ordered)
     look = {"tag": "div", "style": f"--sb-cells:{len(head)}"}
     return cell(table([row(head)], rows), "sb-pins sb-table", **look)
 
@@ -162,7 +167,7 @@ def _head(name: str, title: str, mark: str, buttons: bool) -> str:
     return cell(title, "" if name in _TEXTS else "sb-n", tag="th", scope="col", aria_sort=state)
 
 
-def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
+def _row(line: Line, best: dict[str, float], baseline: int | None, buttons: bool) -> str:
     pin = line.pin
     dash = "solid" if pin is None else "dashed"
     name = Text(
@@ -179,7 +184,9 @@ def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
         else [cell(Text("being computed"), colspan=len(COLUMNS) - 2)]
     )
     note = cell("" if pin is None else quoted(pin.note))
-    return row([cell(name, "sb-name"), cell(quoted(line.method)), *numbers, note])
+    below = "" if buttons else cell(quoted(line.setting), "sb-muted", tag="div")
+    method = cell(quoted(line.method) + below, title=line.setting if buttons else "")
+    return row([cell(name, "sb-name"), method, *numbers, note])
 
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:
