@@ -36,8 +36,7 @@ ZETA, DURATION = label_of("network.zeta"), box_labels("run.duration_h")[0]
 LONG_RUN_H = 300.0
 """Some seconds of computing, within the memory that a run may take."""
 _PER_PROCESS = 8
-_SEARCH_S = (20, 10, 10, 5)
-"""After so long each search is begun anew."""
+_SEARCH_S = (20, 10, 10, 5)  # after so long each search is begun anew
 _RECOMPUTED_EVERY, _RECOMPUTED_FIRST = 25, 7
 _ZETA = re.compile(r"zeta = ([0-9.]+)")
 _PRE = re.compile(r"<pre[^>]*>(.*)</pre>", re.DOTALL)
@@ -310,7 +309,7 @@ def searches(port: int, number: int, ended: Event) -> None:
                 elif place == 3:
                     visitor.set(ZETA, round(0.5 + 0.001 * (step % 300), 3))
                 else:
-                    visitor.set(PAGE_COMMAND, f'[[{step},"{("tune", "verify")[place - 1]}",""]]')
+                    visitor.ask(("tune", "verify")[place - 1])
                 for _ in range(_SEARCH_S[place]):
                     visitor.rest(1.0)
                     if ended.is_set():
@@ -318,6 +317,14 @@ def searches(port: int, number: int, ended: Event) -> None:
 
     with ThreadPoolExecutor(len(_SEARCH_S)) as threads:
         list(threads.map(one, range(len(_SEARCH_S))))
+
+
+def studies(port: int, number: int, ended: Event) -> None:
+    """A visitor who runs the study of the scenario over two quantities, again and again."""
+    with opened(port, number) as visitor:
+        while not ended.wait(0.0):
+            visitor.ask("study")
+            visitor.rest(12.0)
 
 
 def long_under_way(port: int) -> float:

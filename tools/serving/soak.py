@@ -38,12 +38,15 @@ from tools.serving.load import (
     long_under_way,
     pausing,
     searches,
+    studies,
 )
 from tools.serving.table import machine
 
 BESIDE_S = 30.0
 _BESIDE_PAUSE_S = (0.3, 0.8)
 """Short enough for some fifty answers: the 95th percentile of fewer is the slowest one."""
+_BESIDE_STUDY = 1.2
+"""Times alone that an answer may take beside a study."""
 _LONG_PER_PROCESS = 10
 
 
@@ -199,6 +202,7 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
         ("slider_flood", "one who floods a slider", flood_of_a_slider, 1, 8.0),
         ("command_flood", "one who floods commands", flood_of_commands, 1, 8.0),
         ("searches", "four who search in loops", searches, 1, 15.0),
+        ("studies", "one who runs studies", studies, 1, 8.0),
     ]
     if arguments.long:
         processes, settle_s = arguments.long // _LONG_PER_PROCESS, 8.0 + 0.25 * arguments.long
@@ -213,7 +217,8 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
         for hundredth, which in ((50, "median"), (95, "95th percentile")):
             own, other = by_itself.quantile_ms(hundredth), seen.quantile_ms(hundredth)
             what = f"beside {name}: {which} {other:.0f} ms, times alone"
-            rows.append(Row(f"{key}_p{hundredth}", what, other / own, "", most=2.0))
+            most = _BESIDE_STUDY if attack is studies else 2.0
+            rows.append(Row(f"{key}_p{hundredth}", what, other / own, "", most=most))
         rows.append(counted(f"{key}_lost", f"beside {name}: moves without an answer", seen.counts["lost"]))
         if attack is long_runs:
             what, least = f"of {arguments.long} long runs, under way or waiting", 0.9 * arguments.long
@@ -234,13 +239,16 @@ def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]
     ]
 
 
+_PARTS = (alone, cost, lecture, fairness, coming_and_going)
+
+
 def measure(arguments: argparse.Namespace) -> list[Row]:
-    """All rows; each part is told as it ends."""
+    """All rows, or those of some parts; each part is told as it ends."""
     rows: list[Row] = []
     print("\n".join(HEAD), flush=True)
     with Server(arguments.workers) as server:
         time.sleep(5.0)  # the kernels are loaded behind the first page
-        for part in (alone, cost, lecture, fairness, coming_and_going):
+        for part in (each for each in _PARTS if each.__name__ in (arguments.parts or each.__name__)):
             try:
                 fresh = part(server, arguments)
             except (TimeoutError, threading.BrokenBarrierError, queue.Empty, OSError) as error:
@@ -274,6 +282,8 @@ def main() -> None:
         ("--rest", 20.0, "pause after all have left, s"),
     ):
         parser.add_argument(name, type=type(value), default=value, help=about)
+    parts = [part.__name__ for part in _PARTS]
+    parser.add_argument("--parts", nargs="+", choices=parts, help="only these; by default all")
     parser.add_argument("--json", type=Path, help="file for the rows")
     arguments = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(3))  # the way that ends server and visitors too
