@@ -7,6 +7,7 @@ from collections.abc import Callable
 from navcore.engine.run import Run
 from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Profiles, Tuner
 from schuler_bench.jobs.judge import Judge
+from schuler_bench.jobs.studier import Studier
 from schuler_bench.jobs.sweeper import Sweeper
 from schuler_bench.jobs.why import Explainer
 
@@ -41,6 +42,8 @@ class Searches:
         Shares of seeds that meet the limits.
     sweeper : Sweeper
         Runs at other latitudes, log errors, sensor grades and sea states.
+    studier : Studier
+        A study: one scenario over many settings and seeds.
     """
 
     def __init__(self, name: str) -> None:
@@ -55,6 +58,7 @@ class Searches:
         self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
         self.sweeper = Sweeper(self._tell, name)
+        self.studier = Studier(self._tell, name)
         self._all = (
             self.explainer,
             self.tuner,
@@ -65,6 +69,7 @@ class Searches:
             self.limits,
             self.judge,
             self.sweeper,
+            self.studier,
         )
 
     def watch(self, changed: Callable[[], None]) -> None:

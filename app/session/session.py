@@ -79,6 +79,8 @@ class Session:
         Runs that were pinned.
     envelopes : Envelopes
         Bands behind the error curves.
+    study_file : (str, str)
+        Name and text of the uploaded study; empty: none.
     """
 
     def __init__(
@@ -103,7 +105,7 @@ class Session:
         self.prepared: Run | None = None
         self.run_number = 0
         self.display = Display()
-        self.uploads = Uploads(folder)
+        self.uploads, self.study_file = Uploads(folder), ("", "")
         self._before = self.state
         self._views: list[View] = []
         self._after_run: list[Callable[[], None]] = []

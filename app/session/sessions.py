@@ -23,6 +23,7 @@ from schuler_bench.session.folder import link_files, remove_files
 from schuler_bench.session.history import History, State
 from schuler_bench.session.session import Session
 from schuler_bench.session.store import Store
+from schuler_bench.session.studying import LARGEST_TEXT
 from schuler_bench.session.uploads import plain_names, shared_files
 
 MOST_SESSIONS = 64
@@ -235,7 +236,7 @@ def to_document(session: Session, *, whole: bool = True) -> Document:
         steps, at = tuple(session.history.steps), session.history.at
         display, pins = session.display, session.pins.to_json()
         files, shown = list(session.uploads.files), session.pins.all
-        state = session.state
+        state, study = session.state, session.study_file
     if not whole:
         steps, at = ((state, ""),), 0
     first = max(0, at - STEPS_BACK)
@@ -254,6 +255,7 @@ def to_document(session: Session, *, whole: bool = True) -> Document:
         "display": display.model_dump(mode="json") | {"baseline": baseline},
         "pins": [pin | {"scenario": plain_names(pin["scenario"])} for pin in pins],
         "files": files,
+        "study": [*study],
     }
 
 
@@ -325,6 +327,10 @@ def restore(session: Session, document: Document) -> None:
         kept = document["pins"]
         return [pin | {"scenario": _scenario(pin["scenario"], names).canonical()} for pin in kept]
 
+    def study() -> tuple[str, str]:
+        name, text = document.get("study", ("", ""))
+        return str(name)[:_LONGEST_NAME], str(text)[:LARGEST_TEXT]
+
     present = state(steps[at])
     session.resume(
         part("history", history, History(present)),
@@ -335,6 +341,7 @@ def restore(session: Session, document: Document) -> None:
         ),
     )
     part("pins", lambda: session.pins.from_json(pins()), None)
+    session.study_file = part("study", study, ("", ""))
 
 
 def _scenario(data: Any, names: Mapping[str, Path]) -> Scenario:

@@ -14,6 +14,7 @@ from schuler_bench.editing import edits
 from schuler_bench.session.history import first_editable
 from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.session import Session
+from schuler_bench.session.studying import LARGEST_TEXT, is_study, uploaded_study
 from schuler_bench.session.uploads import Upload, opened_scenario, with_plain_names
 from schuler_bench.shell import notices
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     import viser
 
 UPLOADED = "uploaded"
-"""Stands for the uploaded recordings in the scenario chooser."""
+"""Stands for the uploaded recordings in the scenario chooser, and for the uploaded study in its own."""
 SCENARIO, METRICS = "scenario.toml", "metrics.json"
 """Files that can be saved."""
 
@@ -69,12 +70,25 @@ class Opening:
         title = Text("The file cannot be used; nothing was changed")
         with session.lock, notices.told(self._client, title, self._refresh):
             if name.lower().endswith(".toml"):
+                if is_study(text := content[: LARGEST_TEXT + 1].decode("utf-8", "replace")):
+                    self._take_study(name[:60], text)
+                    return
                 opened = opened_scenario(name, content, session.uploads)
                 session.change(opened, None, origin=name[:60], selected=first_editable(opened))
                 return
             upload = session.uploads.add(name, content)
             session.on_change()
             self._run_on(upload)
+
+    def _take_study(self, name: str, text: str) -> None:
+        """Keep an uploaded study for the tab "Study", which shows it from now on."""
+        session = self._session
+        uploaded_study(name, text)
+        session.study_file = name, text
+        session.show(None, study=UPLOADED)
+        session.on_change()
+        line = Text("Open the tab Study to run it.")
+        notices.tell(self._client, Text("{name} is a study", name=name), [line], "info")
 
     def use_map(self, name: str, data: Mapping[str, Any] | None) -> None:
         """Read an uploaded table by a map, or by the guess, and run on it."""

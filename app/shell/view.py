@@ -202,6 +202,10 @@ class View:
                 pictures.append((plot, self.figures(found, plot)))
         return pictures
 
+    def sheet_tables(self) -> str:
+        """HTML of tables for a report of the whole session, below its title; empty where there are none."""
+        return ""
+
     def close(self) -> None:
         """The browser has gone."""
 

@@ -157,6 +157,12 @@ look.sweep = () => [...document.querySelectorAll('.js-plotly-plot')]
   .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Sweep')
   .flatMap(p => p._fullData.map(t => [...t.y]));
 
+// Cells of the map of a study, and what is written in them.
+look.study = () => [...document.querySelectorAll('.js-plotly-plot')]
+  .find(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Study');
+look.mapped = () => look.study()?._fullLayout.shapes.filter(s => s.type === 'rect').length ?? 0;
+look.written = () => look.study()?._fullLayout.annotations.map(a => a.text).join('|') ?? '';
+
 // Bands of the plot of the east velocity, and the sum of the last one's upper edge.
 look.band = () => {
   const chart = Object.values(window.__viserTestpoints?.uplots ?? {})

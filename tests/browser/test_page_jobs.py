@@ -2,11 +2,13 @@
 
 import re
 import threading
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from navcore.design.designs import designs
+from navcore.engine.measures import measure
 from navcore.quantities import QUANTITIES
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
@@ -16,6 +18,7 @@ from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
 from schuler_bench.views.design.view import BUDGET_OF, CHOICES
 from schuler_bench.views.design.view import FIND as FIND_DESIGNS
+from schuler_bench.views.study import view as study
 from schuler_bench.views.sweep.view import METRIC
 from schuler_bench.views.sweep.view import SWEEP as RUN_SWEEP
 from schuler_bench.views.tune import finder
@@ -339,3 +342,58 @@ def test_one_click_sweeps_four_quantities_and_a_change_makes_them_old(short: Ben
         short.press("network.zeta")
     page.get_by_text("of an earlier scenario: sweep again").wait_for()
     sweeper.forget()
+
+
+def test_a_study_is_run_stopped_gone_on_with_and_its_worst_run_opened(short: Bench, tmp_path: Path) -> None:
+    page, session = short.page, short.session
+    studier, before = session.searches.studier, session.scenario
+    session.show(None, study_x="latitude", study_y="log_bias", study_seeds=20)
+    short.tab("Study")
+    page.get_by_text("Run the study: every point of the grid").wait_for()
+    short.button(study.RUN).click()
+    short.wait_until(lambda: (studier.fraction or 0.0) > 0.05, seconds=60.0)
+    short.button(study.STOP).click()
+    page.get_by_text("Stopped after").wait_for(timeout=30_000)
+    part = studier.result.document["runs"]
+    assert 0 < part < studier.result.document["of"]
+    short.button(study.GO_ON).click()
+    short.wait_until(lambda: studier.result.complete, seconds=120.0)
+    short.button(study.GO_ON).wait_for(state="hidden")
+    page.wait_for_function("cells => look.mapped() === cells", arg=len(studier.result.document["cells"]))
+    # another quantity, then the tables
+    first = page.evaluate("look.written()")
+    short.choose(study.METRIC, QUANTITIES["position_max_m"].label)
+    page.wait_for_function("old => look.written() !== old", arg=first)
+    short.choose(study.SHOW, study.SHOWS["tables"])
+    worst = page.locator(".sb-worst .sb-take")
+    worst.first.wait_for()
+    assert worst.count() == 5
+    number = int(worst.first.get_attribute("data-command").split()[1])
+    with short.next_run():
+        worst.first.click()
+    opened, worst_run = session.scenario, study_of(session)["worst"]["position_max_m"][0]
+    assert worst_run["run"] == number and repr(opened.site.lat_deg) == worst_run["factors"]["latitude"]
+    # the run on the page is the run of the study
+    shown = next(one for one in session.run.methods if one.method.name == study_of(session)["name"])
+    assert measure(shown, "position_max_m", 0.0) == worst_run["value"]
+    page.get_by_text("of an earlier scenario").wait_for(state="detached")
+    assert session.undo() and session.scenario == before
+    # a study file is dropped on the page
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'schema = 1\nscenario = "zha-fast"\nset = ["run.duration_h=0.1"]\n'
+        '[[factor]]\nfield = "site.lat_deg"\nvalues = [10, 60]\n'
+    )
+    short.tab("Files")
+    short.upload(file)
+    short.wait_until(lambda: session.display.study == "uploaded")
+    short.button(study.RUN).click()
+    short.wait_until(lambda: studier.result.document["of"] == 2, seconds=60.0)
+    session.show(None, study="", study_shows="pictures")
+
+
+def study_of(session: Any) -> dict[str, Any]:
+    """Summary of the method that the tab "Study" shows."""
+    document, wanted = session.searches.studier.result.document, session.display.study_method
+    names = [one["name"] for one in document["methods"]]
+    return document["methods"][names.index(wanted) if wanted in names else -1]

@@ -5,6 +5,7 @@ import re
 import time
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import suppress
 from html import unescape
 from typing import Any
 
@@ -20,6 +21,7 @@ from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.reports import PAGE_STATE
 from schuler_bench.views import load
 from schuler_bench.views.design.view import DesignView
+from schuler_bench.views.study.view import StudyView
 from schuler_bench.views.tune.view import TuneView
 from tests.attack.conftest import eventually
 from tests.attack.wire import Visitor, visit
@@ -37,11 +39,9 @@ def is_run(message: dict[str, Any]) -> bool:
 def runs(visitor: Visitor, seconds: float) -> list[dict[str, Any]]:
     """All runs that come within a time."""
     until = time.monotonic() + seconds
-    while (left := until - time.monotonic()) > 0.0:
-        try:
+    with suppress(TimeoutError):
+        while (left := until - time.monotonic()) > 0.0:
             visitor.received += decoded(visitor.socket.recv(timeout=left))
-        except TimeoutError:
-            break
     return [message for message in visitor.received if is_run(message)]
 
 
@@ -65,9 +65,9 @@ def test_a_visitor_without_our_script_gets_all_figures(dashboard: Served) -> Non
     with visit(server.port, named(dashboard, "no-script-here")) as visitor:
         visitor.wait_for(is_run, 60.0)
         kinds = [message["type"] for message in visitor.received]
-        # Tune has a figure only once Pareto fronts are searched for; Design begins with its table.
-        drawn = [kind for kind in load() if kind.always and kind not in (TuneView, DesignView)]
-        plotly = [kind for kind in drawn if issubclass(kind, PlotlyView)]
+        # Tune and Study have a figure once they have found something; Design begins with its table.
+        empty = (TuneView, DesignView, StudyView)
+        plotly = [k for k in load() if k.always and k not in empty and issubclass(k, PlotlyView)]
         assert kinds.count("GuiPlotlyMessage") == len(plotly) >= 4
         assert kinds.count("GuiUplotMessage") == 4
 

@@ -189,12 +189,15 @@ class Session:
         Where the scenario comes from.
     date : datetime
         When, with its time zone.
+    tables : sequence of (str, str)
+        Title and HTML of what views add (`schuler_bench.shell.view.View.sheet_tables`).
     """
 
     now: Shown
     pins: Sequence[Pin]
     origin: str
     date: datetime
+    tables: Sequence[tuple[str, str]] = ()
 
     @property
     def title(self) -> str:
@@ -231,13 +234,14 @@ def document(
     body = say(
         Text(
             "<header><h1>Schuler Bench: {title:html}</h1>{about}</header>"
-            "{warnings}{metrics}{requirements}{pins}{plots}{scenario}",
+            "{warnings}{metrics}{requirements}{pins}{tables}{plots}{scenario}",
             title=session.title,
             about=_about(session),
             warnings=_warnings(session),
             metrics=_metrics(session),
             requirements=_requirements(session),
             pins=_pins(session),
+            tables=Text.joined("", (_section(title, html) for title, html in session.tables)),
             plots=plots,
             scenario=_scenario(session),
         )
@@ -355,7 +359,9 @@ class Sheet:
         if now is None:
             self._export.tell_no_run()
             return
-        session = Session(now, frame.session.pins.all, frame.session.origin, datetime.now(UTC))
+        tables = [(view.title, html) for view in frame.views() if (html := view.sheet_tables())]
+        pins, origin = frame.session.pins.all, frame.session.origin
+        session = Session(now, pins, origin, datetime.now(UTC), tables)
         pictures, say = pictures_of(frame, now), partial(text_said, client)
         if name == OVERVIEW:
             self._export.draw(

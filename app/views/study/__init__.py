@@ -1,0 +1,1 @@
+"""Tab "Study": a scenario over settings and seeds: map, what counts most, shares, the worst runs."""
