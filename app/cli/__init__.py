@@ -6,6 +6,7 @@ Exit codes: 0 done; 2 the input is wrong (one line per fault on stderr); 3 the r
 import sys
 from collections.abc import Sequence
 
+from navcore.foundation.cores import one_blas_thread
 from navcore.foundation.errors import InputError, StoppedError, UnstableError
 from schuler_bench.cli.terminal import finish, prepare_streams, say
 
@@ -26,6 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code. Faults of the input are printed, never raised.
     """
     prepare_streams()
+    one_blas_thread()
     try:
         # Only now: a Ctrl-C while the commands are imported is no traceback either.
         from schuler_bench.cli.parse import parse

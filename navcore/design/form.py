@@ -6,6 +6,7 @@ import numpy as np
 
 from navcore.law.combination import realisation_of
 from navcore.networks.base import NetworkParameters
+from navcore.networks.known import transfer_at
 from navcore.networks.state_space import state_spaces
 from navcore.scenario.method import Method
 
@@ -93,7 +94,7 @@ def feedback_form(gains: tuple[float, float, float], omega_s: float, as_printed:
 
 
 def _network_form(uses_log: bool, parameters: NetworkParameters, omega_s: float) -> LawForm:
-    network = parameters.transfer(omega_s)
+    network = transfer_at(parameters, omega_s)
     nums = [network.num_p] if network.feedback_p is None else [network.num_p, network.feedback_p]
     h, *others = state_spaces(nums, network.poles / omega_s)
     E, F = (others[0].C, others[0].D) if others else (np.zeros(len(h.B)), 0.0)

@@ -6,6 +6,7 @@ in m/s, tilt times sqrt(g R) in m/s, so that the free loop is dV' = phi, phi' = 
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -49,6 +50,7 @@ class Level:
         """Tilt (rad) of one normalised unit."""
         return 1.0 / (self.omega_s * RADIUS)
 
+    @cached_property
     def growth_per_s(self) -> float:
         """Largest real part of the eigenvalues, 1/s: positive when the loop is unstable."""
         return float(np.max(np.real(np.linalg.eigvals(self.A)))) * self.omega_s
@@ -143,7 +145,7 @@ def steady_parts(channel: Level) -> dict[str, Entry]:
 
 def decays(channel: Level) -> bool:
     """Whether every mode of a channel decays in continuous time."""
-    return channel.growth_per_s() < -_MARGINAL * channel.omega_s
+    return channel.growth_per_s < -_MARGINAL * channel.omega_s
 
 
 def _growing(channel: Level, column: np.ndarray) -> Entry:

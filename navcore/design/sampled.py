@@ -175,32 +175,36 @@ def sampled_parts(sampled: SampledLevel, channel: Level) -> dict[str, Entry]:
     """
     hold, size = sampled.timing.hold, len(sampled.step)
     columns = np.stack([sampled.added.get(source, np.zeros(size)) for source in RANDOM_SOURCES], axis=1)
-    deviations = {}
-    for output in (DV, PHI):
-        row = np.zeros((1, size))
-        row[0, output] = 1.0
-        C = row.T @ row
-        period = repeated(_Summed(sampled.step, C, np.zeros((size, size)), 1), hold)
-        # X is of the state after an epoch is read; what a period adds before the next one is seen through it
-        X = _discrete_lyapunov(sampled.fresh @ period.S, period.G)
-        later = sampled.fresh.T @ X @ sampled.fresh
-        through = repeated(_Summed(sampled.step, later, np.zeros((size, size)), 1), hold).G
-        variance = np.sum(columns * ((period.H + through) @ columns), axis=0)
-        variance[RANDOM_SOURCES.index("log_white")] += X[sampled.held, sampled.held] * sampled.read**2
-        deviations[output] = np.sqrt(np.maximum(variance, 0.0) / hold)
+    C = np.zeros((2, size, size))  # of both outputs, dV and phi, side by side
+    C[(0, 1), (DV, PHI), (DV, PHI)] = 1.0
+    period = repeated(_Summed(sampled.step, C, np.zeros_like(C), 1), hold)
+    # X is of the state after an epoch is read; what a period adds before the next one is seen through it
+    X = _discrete_lyapunov(sampled.fresh @ period.S, period.G)
+    later = sampled.fresh.T @ X @ sampled.fresh
+    through = repeated(_Summed(sampled.step, later, np.zeros_like(C), 1), hold).G
+    variances = np.sum(columns * ((period.H + through) @ columns), axis=1)
+    read = X[:, sampled.held, sampled.held] * sampled.read**2
+    variances[:, RANDOM_SOURCES.index("log_white")] += read
+    velocity, tilt = np.sqrt(np.maximum(variances, 0.0) / hold).tolist()
     return {
-        source: Entry(Figures(float(deviations[PHI][k]) * channel.tilt_unit, float(deviations[DV][k])))
+        source: Entry(Figures(tilt[k] * channel.tilt_unit, velocity[k]))
         for k, source in enumerate(RANDOM_SOURCES)
     }
 
 
 def _discrete_lyapunov(M: np.ndarray, G: np.ndarray) -> np.ndarray:
-    """Solve X = M' X M + G by squaring."""
+    """Solve X = M' X M + G by squaring; G has no negative eigenvalue, shape (k, n, n)."""
     X = G
     for _ in range(_SQUARINGS):
         added = M.T @ X @ M
         X = X + added
-        if np.max(np.abs(added)) <= 1e-15 * np.max(np.abs(X)):
+        # the largest elements of such matrices stand on their diagonals
+        if (_diagonals(added) <= 1e-15 * _diagonals(X)).all():
             break
         M = M @ M
     return X
+
+
+def _diagonals(X: np.ndarray) -> np.ndarray:
+    """Largest diagonal element of each matrix."""
+    return X.diagonal(axis1=1, axis2=2).max(axis=1)

@@ -13,6 +13,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
+from navcore.networks.known import transfer_at
 from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.fields import ScenarioFields
 from navcore.scenario.method import Method
@@ -118,7 +119,7 @@ def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:
         if method.event and scenario.reference.kind != "log":
             yield Fault("", f"{at}.event", None, Text('needs reference.kind = "log"'))
         try:
-            method.network.transfer(scenario.omega_s)
+            transfer_at(method.network, scenario.omega_s)
         except InputError as error:
             yield from error.located("", f"{at}.network.").faults
             continue

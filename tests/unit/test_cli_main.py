@@ -137,6 +137,20 @@ def test_in_a_checkout_the_folder_is_the_command_too(name: str, loaded: str):
     assert by_the_folders_name == loaded, "a module is imported under two names"
 
 
+@pytest.mark.parametrize(("given", "wanted"), [(None, "1"), ("3", "3")])
+def test_blas_has_one_thread_unless_the_user_says_otherwise(given: str | None, wanted: str) -> None:
+    names = "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
+    environment = {name: value for name, value in os.environ.items() if name not in names}
+    if given is not None:
+        environment[names[0]] = given
+    code = (
+        "import os, sys; from schuler_bench.cli import main; assert 'numpy' not in sys.modules; "
+        f"main(['presets']); print(os.environ['{names[0]}'], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, env=environment, cwd=ROOT)
+    assert done.stderr.decode().strip() == wanted
+
+
 def test_a_reader_that_leaves_early_is_no_fault():
     reading, writing = os.pipe()
     os.close(reading)

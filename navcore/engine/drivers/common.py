@@ -17,6 +17,7 @@ from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, spans_from
 from navcore.motion.truth import COLUMNS, VE, VN, Truth
 from navcore.networks.base import LinearNetwork
+from navcore.networks.known import transfer_at
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors
@@ -29,7 +30,7 @@ STOPPED = Text("stopped by the user")
 
 def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
     """Return H(s) of a method at the site, as its policy runs it; 1 when it is free."""
-    return method.kind.network(method).transfer(scenario.omega_s)
+    return transfer_at(method.kind.network(method), scenario.omega_s)
 
 
 def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
@@ -167,7 +168,7 @@ def network_on_average(method: Method, network: LinearNetwork, rows: np.ndarray)
         return network
     parameters = method.policy.network_in_force(method.network)
     mean_xi = float(np.mean(rows[damped, XI_COLUMN]))
-    return parameters.with_damping(mean_xi).transfer(network.omega_s)
+    return transfer_at(parameters.with_damping(mean_xi), network.omega_s)
 
 
 def method_run(
