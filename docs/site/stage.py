@@ -21,7 +21,15 @@ _ANCHORED_LINK = re.compile(r"\]\((?:[\w./-]+\.md)?#((?:s|eq)-[\w-]+)\)")
 _GUIDE = [
     (
         "Start",
-        ["docs/tutorial", "docs/scenario", "docs/import", "docs/networks", "docs/interface", "docs/scale"],
+        [
+            "docs/tutorial",
+            "docs/scenario",
+            "docs/import",
+            "docs/networks",
+            "docs/interface",
+            "docs/scale",
+            "docs/teaching",
+        ],
     ),
     ("Theory", ["docs/theory", "docs/design", "docs/papers"]),
     ("Lessons", []),
