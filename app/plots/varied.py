@@ -1,7 +1,5 @@
 """What a sweep or a study varies, in words: labels of its quantities and of their values."""
 
-from collections.abc import Sequence
-
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from schuler_bench.plots.units import number
@@ -22,12 +20,8 @@ def varied_label(column: str) -> str:
     return symbol(column.rsplit(".", 1)[-1]) if "." in column else column
 
 
-def value_texts(values: Sequence[float | str]) -> list[str]:
-    """Values of a factor: numbers, also those that stand as texts in the results, in three digits."""
-    return [_value_text(value) for value in values]
-
-
-def _value_text(value: float | str) -> str:
+def value_text(value: float | str) -> str:
+    """Value of a factor: a number, also one that stands as a text in the results, in three digits."""
     try:
         return number(float(value), 3)
     except ValueError:

@@ -98,13 +98,16 @@ class PlotlyView(PictureView[PlotlyFigure]):
         return enlarged(figure, self.frame.layout().scale)
 
     def show(self, picture: PlotlyFigure) -> None:
-        """Send the figure."""
-        if self._plot is not None:
-            self._plot.figure = picture
-        elif self._tab is not None:
+        """Send the figure, or hide the plot where there is none."""
+        if self._plot is None and picture and self._tab is not None:
             plot: Any = picture
             with self._tab:
                 self._plot = self.frame.gui.add_plotly(plot, aspect=self._on_screen)
+        elif self._plot is not None:
+            if picture:
+                self._plot.figure = picture
+            if self._plot.visible != bool(picture):
+                self._plot.visible = bool(picture)
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the figure to be saved."""

@@ -19,6 +19,7 @@ from navcore.law.records import LawKind
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.azimuth_loop import AzimuthChannel
 from navcore.networks.base import LinearNetwork, NetworkParameters
+from navcore.networks.known import transfer_at
 from navcore.networks.undamped import UndampedNetwork
 
 Carrying = Literal["law", "copies", "filter"]
@@ -166,7 +167,7 @@ class Damping:
         network : LinearNetwork
             H(s) of the method's network.
         """
-        return _undamped(network.omega_s)
+        return transfer_at(UndampedNetwork(), network.omega_s)
 
     def faults(self, method: Configured, law_step_s: float) -> Iterator[Fault]:
         """Yield what does not go together within the method; fields relative to it.
@@ -217,11 +218,6 @@ class NetworkDamping(Damping):
     def notices(self, method: Configured) -> Iterator[str]:
         """Yield what policy and switching method say of the network."""
         yield from combination_warnings(method.network, method.policy, method.switching)
-
-
-@lru_cache(maxsize=64)
-def _undamped(omega_s: float) -> LinearNetwork:
-    return UndampedNetwork().transfer(omega_s)
 
 
 @lru_cache(maxsize=256)

@@ -133,8 +133,7 @@ class Folder:
         import pyarrow as pa
 
         end = rows[-1]["run"] + 1
-        with replacing(self._parts / f"{first:012d}-{end:012d}.parquet") as file:
-            self._write(file, [pa.Table.from_pylist(rows, self._schema)])
+        self._keep(first, end, pa.Table.from_pylist(rows, self._schema))
 
     def take(self, runs: bytes) -> None:
         """Put the runs of a ``runs.parquet`` of the same study, stopped earlier, in the place of parts."""
@@ -145,9 +144,7 @@ class Folder:
         numbers = table["run"].to_numpy()
         ends = [*(np.flatnonzero(np.diff(numbers) > 1) + 1), len(numbers)] if len(numbers) else []
         for first, end in zip([0, *ends], ends, strict=False):
-            named = f"{numbers[first]:012d}-{numbers[end - 1] + 1:012d}.parquet"
-            with replacing(self._parts / named) as file:
-                self._write(file, [table.slice(first, end - first)])
+            self._keep(numbers[first], numbers[end - 1] + 1, table.slice(first, end - first))
 
     def join(self) -> Path:
         """Write ``runs.parquet`` from the parts, in the order of the runs; at no time all of it in memory."""
@@ -162,13 +159,20 @@ class Folder:
         if summary["status"] == "complete":
             shutil.rmtree(self._parts, ignore_errors=True)
 
+    def _part(self, first: int, end: int) -> Path:
+        return self._parts / f"{first:012d}-{end:012d}.parquet"
+
+    def _keep(self, first: int, end: int, table: pa.Table) -> None:
+        with replacing(self._part(first, end)) as file:
+            self._write(file, [table])
+
     def _grouped(self) -> Iterator[pa.Table]:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
         waiting: list[pa.Table] = []
         for first, end in self.done():
-            waiting.append(pq.read_table(self._parts / f"{first:012d}-{end:012d}.parquet"))
+            waiting.append(pq.read_table(self._part(first, end)))
             if sum(map(len, waiting)) >= _GROUP_ROWS:
                 yield pa.concat_tables(waiting)
                 waiting = []

@@ -137,10 +137,7 @@ class DesignView(PlotlyView):
 
     def show(self, picture: PlotlyFigure) -> None:
         """Send the bars, or show the table."""
-        if picture:
-            super().show(picture)
-        if self._plot is not None and self._plot.visible != bool(picture):
-            self._plot.visible = bool(picture)
+        super().show(picture)
         run = self.session.run
         html = ""
         if not picture and run is not None:

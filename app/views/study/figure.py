@@ -11,7 +11,7 @@ from navcore.quantities import QUANTITIES
 from schuler_bench.plots import style
 from schuler_bench.plots.plotly_data import PlotlyFigure, figure
 from schuler_bench.plots.units import number
-from schuler_bench.plots.varied import value_texts, varied_label
+from schuler_bench.plots.varied import value_text, varied_label
 
 MET = "met"
 """In the place of a metric: the share of runs that meets all limits."""
@@ -145,7 +145,7 @@ def _map(
         layout[f"{key}axis"] = style.axis(
             varied_label(column),
             tickvals=[*range(len(named))],
-            ticktext=value_texts(named),
+            ticktext=[*map(value_text, named)],
             range=[-0.5, len(named) - 0.5],
             anchor="y" if key == "x" else "x",
             **ticks,
@@ -176,9 +176,9 @@ def _map(
             Text(
                 "{across} {x}<br>{up} {y}<br><b>{value}</b>",
                 across=varied_label(columns[0]),
-                x=value_texts(across)[x],
+                x=value_text(across[x]),
                 up=varied_label(columns[1]),
-                y=value_texts(up)[y],
+                y=value_text(up[y]),
                 value=written,
             )
         )
@@ -214,7 +214,7 @@ def _curves(
     layout["showlegend"] = True
     values = [cell["factors"][columns[0]] for cell in cells] if columns else []
     layout["yaxis"] = style.axis(label, anchor="x", rangemode="tozero", nticks=6)
-    ticks = {"tickvals": [*range(len(values))], "ticktext": value_texts(values)}
+    ticks = {"tickvals": [*range(len(values))], "ticktext": [*map(value_text, values)]}
     layout["xaxis"] = style.axis(varied_label(columns[0]), anchor="y", **ticks) if columns else style.axis(
         anchor="y", tickvals=[*range(len(names))], ticktext=[*map(style.plain, names)]
     )  # fmt: skip
@@ -271,9 +271,9 @@ def _tornado(
                 "<b>{factor}</b><br>{least} at {at_least}<br>{largest} at {at_largest}<extra></extra>",
                 factor=varied_label(one["factor"]),
                 least=number(one["least"], 3),
-                at_least=value_texts([one["at_least"]])[0],
+                at_least=value_text(one["at_least"]),
                 largest=number(one["largest"], 3),
-                at_largest=value_texts([one["at_largest"]])[0],
+                at_largest=value_text(one["at_largest"]),
             )
             for one in rows
         ]
@@ -295,7 +295,7 @@ def _tornado(
         )
         for place, one in enumerate(rows):
             for end, anchor in (("least", "right"), ("largest", "left")):
-                written = value_texts([one[f"at_{end}"]])[0]
+                written = value_text(one[f"at_{end}"])
                 layout["annotations"].append(
                     style.text(
                         one[end], place - _BELOW, written, xref="x2", yref="y2", xanchor=anchor,

@@ -9,7 +9,7 @@ from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
-from schuler_bench.plots.varied import value_texts, varied_label
+from schuler_bench.plots.varied import value_text, varied_label
 from schuler_bench.shell import notices
 from schuler_bench.views.study.figure import MET, label_of
 
@@ -72,7 +72,7 @@ def worst_html(document: dict[str, Any], metric: str, method: str, *, buttons: b
             hint=_HINT,
             words=_OPEN,
         )
-        values = value_texts([*run["factors"].values()])
+        values = map(value_text, run["factors"].values())
         cells = [cell(str(run["run"]), "sb-n"), *(cell(quoted(value), "sb-n") for value in values)]
         cells += [
             cell(_number(run["value"]), "sb-n"),

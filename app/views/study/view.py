@@ -71,7 +71,7 @@ class StudyView(PlotlyView):
         self._seeds: Any = gui.add_number(
             SEEDS, self.session.display.study_seeds, min=1, max=200, step=1, hint=Text("Runs at each point.")
         )
-        self._seeds.on_update(if_user(lambda: self._choose(study_seeds=int(self._seeds.value))))
+        self._seeds.on_update(if_user(lambda: self.frame.show(study_seeds=int(self._seeds.value))))
         hint = Text("Runs all methods at each point with each seed, in the background.")
         self._controls = SearchControls(gui, self._studier, self._begin, (RUN, STOP), hint)
         self._on: Any = gui.add_button(
@@ -90,11 +90,8 @@ class StudyView(PlotlyView):
     def _chooser(self, label: str, choice: str, hint: str) -> Any:
         """Make a dropdown of a choice of the display; `_show_tools` gives it its options."""
         box: Any = self.frame.gui.add_dropdown(label, ("",), hint=hint)
-        box.on_update(if_user(lambda: self._choose(**{choice: self._options(choice)[str(box.value)]})))
+        box.on_update(if_user(lambda: self.frame.show(**{choice: self._options(choice)[str(box.value)]})))
         return box
-
-    def _choose(self, **choice: Any) -> None:
-        self.frame.show(**choice)
 
     def _options(self, choice: str) -> dict[str, str]:
         """Words -> value of a choice, in the order of the list."""
@@ -228,10 +225,7 @@ class StudyView(PlotlyView):
 
     def show(self, picture: PlotlyFigure) -> None:
         """Send the picture, or show the tables."""
-        if picture:
-            super().show(picture)
-        if self._plot is not None and self._plot.visible != bool(picture):
-            self._plot.visible = bool(picture)
+        super().show(picture)
         html = ""
         if not picture:
             html = self._tables(buttons=True) or notices.small(_EMPTY)

@@ -130,12 +130,5 @@ class TuneView(PlotlyView):
             raise LookupError(Text("No Pareto fronts have been found yet."))
         return super().figures(found, plot)
 
-    def show(self, picture: PlotlyFigure) -> None:
-        """Send the fronts, or hide them."""
-        if picture:
-            super().show(picture)
-        if self._plot is not None and self._plot.visible != bool(picture):
-            self._plot.visible = bool(picture)
-
 
 VIEW = TuneView
