@@ -132,6 +132,10 @@ class Column:
         elif not stands and view.title in self._tabs:
             self._tabs.pop(view.title).remove()
 
+    def behind(self, front: Set[str]) -> set[str]:
+        """Titles of the tabs behind those in front; none while ``front`` is unknown, and so empty."""
+        return {view.title for view in self._views} - front if front else set()
+
     def tell_front(self, front: Set[str]) -> None:
         """Let the views in front know that they are."""
         for view in self._views:

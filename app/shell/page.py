@@ -62,6 +62,7 @@ class Page:
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
+        self._behind: set[str] = set()
         self._views: list[View] = []
         self._faults = ViewFaults(client)
         self._pace = Pace(self._draw, self._refresh_late)
@@ -172,14 +173,29 @@ class Page:
             self._show_stale()
 
     def refresh(self) -> None:
-        """Let every view show the session's scenario; the control in use stays as it is."""
+        """Let every view in sight show the session's scenario; the control in use stays as it is."""
         self._pace.controls_wait = False
         self.editor.catch_up()
         self.header.show_scenario()
-        for view in self._views:
-            self._faults.call(view.follow_scenario)
-            self._faults.call(view.follow_jobs)
+        for view in self._in_sight():
+            self._follow(view)
         self.palette.show()
+
+    def _in_sight(self) -> list[View]:
+        """All views but the results' tabs behind others: these catch up once they come to the front."""
+        behind = self.column.behind(self._in_front)
+        self._behind |= behind
+        return [view for view in self._views if view.title not in behind]
+
+    def _follow(self, view: View) -> None:
+        self._faults.call(view.follow_scenario)
+        self._faults.call(view.follow_jobs)
+
+    def _catch_up(self) -> None:
+        fresh, self._behind = self._behind & self._front, self._behind - self._front
+        for view in self._views:
+            if view.title in fresh:
+                self._follow(view)
 
     def display_changed(self, by: object) -> None:
         """Draw the pictures in front as the session's display says."""
@@ -261,7 +277,7 @@ class Page:
         self._update(self._follow_jobs)
 
     def _follow_jobs(self) -> None:
-        for view in self._views:
+        for view in self._in_sight():
             self._faults.call(view.follow_jobs)
 
     def _update(self, act: Callable[[], None]) -> None:
@@ -303,13 +319,13 @@ class Page:
             self.column.show(sources, pictures, wanted)
             self.editor.catch_up()
             if whole:
+                for view in self._views:
+                    self._faults.call(view.draw, sources)
                 if self._pace.controls_wait:
                     self.refresh()
                 else:
                     self.palette.show()
-                for view in self._views:
-                    self._faults.call(view.draw, sources)
-                    self._faults.call(view.follow_jobs)
+                    self._follow_jobs()
                 frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
                 self.header.show_run(run, sources.number, outdated=session.outdated, frame_ms=frame_ms)
                 self._run_element.content = content
@@ -359,6 +375,8 @@ class Page:
         if self._built:
             self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(report)}"></div>'
             self._arrange()
+            if self._behind & self._front:
+                self._update(self._catch_up)
             self.column.take_rooms(rooms)
             self._show_stale()
             self.column.tell_front(self._front)

@@ -1,6 +1,7 @@
 """The closed Schuler loop s^2 + omega_s^2 H(s) of one level channel: stability, damping, settling."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -133,6 +134,7 @@ def _settling(network: LinearNetwork, poles: ComplexArray, zero: np.ndarray) -> 
     return None if tau is None else float(tau / network.omega_s)
 
 
+@lru_cache(maxsize=64)
 def velocity_settling(network: LinearNetwork, loop: Loop) -> float | None:
     """Return the last time at which the velocity error after an initial tilt exceeds 2 % of its swing, s.
 

@@ -6,6 +6,7 @@ The model is the one of theory.md 2 without longitude, at rest or at a constant 
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +55,7 @@ class LawForm:
     k1: float
 
 
+@lru_cache(maxsize=512)
 def law_form(network: LinearNetwork) -> LawForm:
     """State-space form of the damping law of a network as it acts (`navcore.damping.base.Damping.acting`)."""
     poles = network.poles / network.omega_s

@@ -1,6 +1,7 @@
 """The vehicle's true state on a uniform time grid: its columns, and where it starts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -35,6 +36,31 @@ class Truth:
 
     step_s: float
     values: np.ndarray
+    _last: list[np.ndarray] = field(default_factory=list, init=False, repr=False)
+
+    @cached_property
+    def mean_velocity(self) -> tuple[float, float]:
+        """Mean east and north velocity, m/s."""
+        return float(np.mean(self.column(VE))), float(np.mean(self.column(VN)))
+
+    def at(self, rows: np.ndarray) -> np.ndarray:
+        """Rows of `values`, shape (m, 15), not to be written to; a single row stands for all times.
+
+        The last answer is kept: every run along this truth asks for the same rows.
+
+        Parameters
+        ----------
+        rows : ndarray of int, shape (m,)
+            Places on the grid.
+        """
+        if self.constant:
+            return np.broadcast_to(self.values, (len(rows), COLUMNS))
+        last = tuple(self._last)
+        if not (last and np.array_equal(last[0], rows)):
+            last = rows, self.values[rows]
+            last[1].setflags(write=False)
+            self._last[:] = last
+        return last[1]
 
     @property
     def constant(self) -> bool:

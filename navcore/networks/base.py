@@ -83,15 +83,16 @@ class LinearNetwork:
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
-        feedback = b"" if self.feedback_p is None else self.feedback_p.tobytes()
-        return self.num_p.tobytes(), self.den_p.tobytes(), feedback, self.omega_s, self.realisation
+        arrays = self.num_p, self.den_p, self.poles, self.feedback_p, self.closed_loop_p
+        parts = (b"" if array is None else array.tobytes() for array in arrays)
+        return *parts, self.omega_s, self.realisation
 
     def __eq__(self, other: object) -> bool:
-        """Whether another network has the same coefficients: a cache can have it as its key."""
+        """Whether another network has the same coefficients and poles: a cache can have it as its key."""
         return isinstance(other, LinearNetwork) and self._key == other._key
 
     def __hash__(self) -> int:
-        """Hash of the coefficients."""
+        """Hash of coefficients and poles."""
         return hash(self._key)
 
     @property

@@ -19,6 +19,7 @@ from navcore.motion.truth import (
     AE,
     AN,
     AU,
+    COLUMNS,
     HEADING,
     HEADING_RATE,
     HEIGHT,
@@ -32,6 +33,7 @@ from navcore.motion.truth import (
     VN,
     VU,
     Site,
+    Truth,
 )
 from tests.motions import MANOEUVRES, SUN, ZHAO
 
@@ -269,3 +271,17 @@ def test_pitch_beyond_the_vertical_is_refused() -> None:
 def test_fields_out_of_range_are_refused(model: type[Parameters], field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
         model.model_validate({field: value})
+
+
+def test_rows_of_a_truth_are_those_asked_for_and_the_last_answer_is_kept() -> None:
+    truth = Truth(0.5, np.arange(60.0).reshape(4, COLUMNS))
+    first = truth.at(np.array([0, 2]))
+    assert np.array_equal(first, truth.values[[0, 2]])
+    assert truth.at(np.array([0, 2])) is first
+    assert np.array_equal(truth.at(np.array([1, 3])), truth.values[[1, 3]])
+    assert np.array_equal(truth.at(np.array([0, 2])), first)
+    with pytest.raises(ValueError, match="read-only"):
+        first[0, 0] = 1.0
+    assert truth.mean_velocity == (truth.values[:, VE].mean(), truth.values[:, VN].mean())
+    still = Truth(0.5, truth.values[:1])
+    assert np.array_equal(still.at(np.arange(3)), np.repeat(truth.values[:1], 3, axis=0))

@@ -1,5 +1,7 @@
 """`LinearNetwork`: polynomials, roots, gains and frequency response belong to one H(s)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -64,6 +66,15 @@ def test_repeated_roots_of_classic3_are_exact() -> None:
     network = parse_network({"id": "classic3"}).transfer(OMEGA_S)
     assert network.poles == pytest.approx([-4.41e-3, -8.8e-3, -8.8e-3], rel=1e-15)
     assert network.zeros == pytest.approx([-8.8e-4, -1.97e-2, -1.97e-2], rel=1e-15)
+
+
+def test_networks_are_equal_only_with_the_same_poles_bit_for_bit() -> None:
+    network = parse_network({"id": "classic3"}).transfer(OMEGA_S)
+    same = replace(network, poles=network.poles.copy())
+    rounded = replace(network, poles=network.poles * (1.0 + 1e-15))
+    assert network == same
+    assert hash(network) == hash(same)
+    assert network != rounded, "a cache would give one the other's state space"
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ class StripView(View):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._found: Shown | None = None
+        self._shown: tuple[Shown | None, int] = (None, 0)
         frame.commands.register(EDIT, self._edit)
 
     def build(self, tab: Tab) -> None:
@@ -51,9 +52,9 @@ class StripView(View):
 
     def follow_scenario(self) -> None:
         """Mark the card of the method that is edited now."""
-        html = strip_html(self._found, self.session.selected)
-        if self._cards.content != html:
-            self._cards.content = html
+        found, selected = self._found, self.session.selected
+        if found is not self._shown[0] or selected != self._shown[1]:
+            self._shown, self._cards.content = (found, selected), strip_html(found, selected)
 
     def draw(self, found: Shown) -> None:
         """Show the results of a run."""

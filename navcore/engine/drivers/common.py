@@ -15,7 +15,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, spans_from
-from navcore.motion.truth import COLUMNS, VE, VN, Truth
+from navcore.motion.truth import Truth
 from navcore.networks.base import LinearNetwork
 from navcore.networks.known import transfer_at
 from navcore.scenario.method import Method
@@ -55,11 +55,6 @@ def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
     if reference.moored.size:
         extra[reference.moored] = 0.0
     return replace(reference, error=reference.error + extra)
-
-
-def truth_at(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Rows of truth; a single row stands for all times."""
-    return np.broadcast_to(values, (len(rows), COLUMNS)) if values.shape[0] == 1 else values[rows]
 
 
 @dataclass(frozen=True)
@@ -125,8 +120,7 @@ def stability_of(
         sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth, coupled, azimuth)
         warnings, growth = (*warnings, *sampled.warnings), sampled.growth_per_s
         if coupled:
-            v_e, v_n = (float(np.mean(truth.column(axis))) for axis in (VE, VN))
-            course = Course(v_e, v_n, kind.referenced and log.body_frame)
+            course = Course(*truth.mean_velocity, kind.referenced and log.body_frame)
             place = scenario.earth, scenario.site.height_m
             warnings += tuple(_under_way(course, growth_under_way(acting, lat, course, *place, azimuth)))
     return Stability(loop, whole, warnings, growth)

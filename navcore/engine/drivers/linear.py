@@ -20,7 +20,6 @@ from navcore.engine.drivers.common import (
     requirement_spans,
     seen_by,
     stability_of,
-    truth_at,
 )
 from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
@@ -118,7 +117,7 @@ def run_methods(
         scenario=scenario,
         methods=methods,
         t_s=steps * scenario.run.step_s,
-        truth=truth_at(env.truth_half.values, 2 * steps),
+        truth=env.truth_half.at(2 * steps),
         warnings=env.warnings,
         elapsed_s=time.perf_counter() - began,
         scenario_sha256=scenario_hash(scenario),
@@ -146,7 +145,7 @@ def _run_method(
         reason,
         run.position * step_s,
         notices=notices,
-        sigma=own_sigma(run, truth_at(env.truth_half.values, 2 * run.recorder.row_steps), scenario.earth),
+        sigma=own_sigma(run, env.truth_half.at(2 * run.recorder.row_steps), scenario.earth),
     )
 
 

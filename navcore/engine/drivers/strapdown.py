@@ -20,7 +20,6 @@ from navcore.engine.drivers.common import (
     requirement_spans,
     seen_by,
     stability_of,
-    truth_at,
 )
 from navcore.engine.drivers.kalman import filtered_strapdown, own_sigma
 from navcore.engine.run import MethodRun, Run, Status
@@ -89,7 +88,7 @@ def run_methods(
         scenario=scenario,
         methods=tuple(_finish(scenario, env, method, *run) for method, run in methods),
         t_s=rows * rates.record_step_s,
-        truth=truth_at(env.truth.values, rows),
+        truth=env.truth.at(rows),
         warnings=env.warnings,
         elapsed_s=time.perf_counter() - began,
         sampling=rates,
@@ -146,5 +145,5 @@ def _finish(
         run.position / run.settings.rate_hz,
         run.navigation,
         notices,
-        own_sigma(run, truth_at(env.truth.values, run.recorder.row_steps), scenario.earth),
+        own_sigma(run, env.truth.at(run.recorder.row_steps), scenario.earth),
     )
