@@ -186,7 +186,7 @@ def map_field() -> Any:
     return Field(
         default=None,
         description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
-        json_schema_extra={"label": Text("map")},
+        json_schema_extra={"label": Text("map of columns")},
     )
 
 

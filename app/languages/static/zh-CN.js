@@ -35,7 +35,7 @@ window.schuler.words = {
   "position errors x {0}": "位置误差 x {0}",
   "drawn x {0}": "放大 x {0}",
   "position errors {0}; ship not to scale": "位置误差{0}；船不按比例",
-  "map": "列映射",
+  "map": "地图",
   "follow": "跟随",
   "top": "俯视",
   "side": "侧视",

@@ -229,35 +229,25 @@ def _on_axis(rows: np.ndarray, count: int) -> np.ndarray:
 
 
 def switching_legend(run: Run) -> str:
-    """Names of the methods that switch, their thresholds, and what the dashes mean."""
-    items = Text.joined(
-        "",
-        (
-            Text(
-                '<span style="display:inline-flex;align-items:center;gap:6px"><span '
-                'style="flex:none;width:18px;{bar}"></span>{name:html}</span>',
-                bar=bar,
-                name=name,
-            )
-            for name, bar in _legend(run)
-        ),
-    )
+    """Measures, their thresholds, and what the dashes mean; the strip of results names the methods."""
+    items = [
+        Text(
+            '<span class="sb-entry"><span style="flex:none;width:18px;{bar}"></span>{name:html}</span>',
+            bar=bar,
+            name=name,
+        )
+        for name, bar in _legend(run)
+    ]
     return Text(
-        '<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px '
-        '{y_size}px;font-size:{font_size}px;color:{ink}">{items}</div>',
+        '<div class="sb-legend" style="padding-left:{y_size}px">{items}</div>',
         y_size=Y_SIZE + LABEL_SIZE,
-        font_size=style.FONT_SIZE,
-        ink=style.INK,
-        items=items,
+        items=Text.joined("", items),
     )
 
 
 def _legend(run: Run) -> list[tuple[str, str]]:
     """Text and style of each entry."""
-    methods = switched_methods(run)
-    items = [
-        (m.method.name, f"border-top:3px solid {style.method_color(i)}") for i, m in enumerate(run.methods)
-    ]
+    methods, items = switched_methods(run), list[tuple[str, str]]()
     for place, kind in enumerate(_kinds(methods)):
         mine = [m for m in methods if m.measure == kind]
         if len(kind.label) > _LONGEST:
