@@ -59,6 +59,7 @@ def closed_loop_poles(network: LinearNetwork) -> ComplexArray:
     return sorted_roots(np.roots(closed_loop_polynomial(network)))
 
 
+@lru_cache(maxsize=256)
 def analyse(network: LinearNetwork) -> Loop:
     """Judge the closed loop of one level channel: poles, damping, settling.
 

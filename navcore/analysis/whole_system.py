@@ -141,6 +141,7 @@ def whole_system(
     )
 
 
+@lru_cache(maxsize=256)
 def growth_under_way(
     network: LinearNetwork,
     lat: float,

@@ -5,6 +5,7 @@ The direct form that Liu prints is never run: at Schuler scale its coefficients 
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -77,6 +78,7 @@ class DiscreteNetwork:
             raise InputError(Fault("", "poles", None, reason)) from None
 
 
+@lru_cache(maxsize=256)
 def discretise(network: LinearNetwork, step_s: float) -> DiscreteNetwork:
     """Discretise a network.
 

@@ -5,6 +5,8 @@ import math
 import weakref
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -93,7 +95,10 @@ def simulated_errors(
     if log.delay_s == log.smoothing_s == lsb == 0.0:
         error = log.linear_errors(truth, time_s, own)
     else:
-        error = log.delayed_rounded_errors(truth, time_s, own, lsb)
+        key = "log readings", weakref.ref(truth), reference, duration_s, step_s
+        make = partial(log.readings, truth, time_s)
+        readings = kept(key, make) if parts is None else make()
+        error = log.rounded_errors(readings, own, lsb)
     error = sum((part.after(time_s) for part in log.parts if part.after), error)
     valid = log_works(reference, truth, time_s)
     still = np.zeros(0, dtype=bool)
@@ -136,12 +141,12 @@ def mean_rounding_of(
         return time_s, []
     sigma, errors = reference.dither / math.sqrt(samples), []
     still = _Log(tuple(replace(part, white=0.0) for part in log.parts), log.body_frame)
+    readings = log.readings(truth, time_s)
     paths = _PATHS if any(part.markov[0] > 0.0 for part in log.parts) else 1
     for seed in range(paths):
         own, _ = still.own(time_s.size, interval, seed, 1.0)
-        seen, heading, _ = log.readings(truth, time_s, own)
-        error = mean_rounding(seen, log.lsb, sigma) / math.sqrt(paths)
-        error = to_navigation(error, heading) if log.body_frame else error
+        error = mean_rounding(readings.along_axes + own, log.lsb, sigma) / math.sqrt(paths)
+        error = to_navigation(error, readings.heading) if log.body_frame else error
         errors.append(np.broadcast_to(error, (time_s.size, 2)))
     return time_s, errors
 
@@ -223,32 +228,28 @@ class _Log:
         velocity, heading = _true_state(truth, time_s)
         return error + self.scale * velocity + (to_navigation(own, heading) if self.body_frame else own)
 
-    def delayed_rounded_errors(
-        self,
-        truth: Truth,
-        time_s: np.ndarray,
-        own: np.ndarray,
-        lsb: float,
-    ) -> np.ndarray:
-        """Errors of readings of an earlier velocity, smoothed and rounded, in the log's axes.
+    def rounded_errors(self, readings: "_Readings", own: np.ndarray, lsb: float) -> np.ndarray:
+        """Errors of readings that are rounded in the log's axes; a body log's are turned by the heading."""
+        read = _rounded(readings.along_axes + own, lsb)
+        return (to_navigation(read, readings.heading) if self.body_frame else read) - readings.velocity
 
-        A body log is turned by the present heading.
-        """
-        seen, heading, velocity = self.readings(truth, time_s, own)
-        read = _rounded(seen, lsb)
-        return (to_navigation(read, heading) if self.body_frame else read) - velocity
-
-    def readings(
-        self, truth: Truth, time_s: np.ndarray, own: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Readings before they are rounded, in the log's axes; present heading and velocity."""
+    def readings(self, truth: Truth, time_s: np.ndarray) -> "_Readings":
+        """Readings of an earlier velocity, smoothed, to which any seed adds the log's own errors."""
         measured_at = np.maximum(time_s - self.delay_s, 0.0)
         velocity, heading = _true_state(truth, time_s)
         then_velocity, then_heading = _true_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_motion(truth, measured_at)
         along_axes = to_ship(seen, then_heading) if self.body_frame else seen
-        return _smoothed(along_axes, time_s, self.smoothing_s) + own, heading, velocity
+        return _Readings(_smoothed(along_axes, time_s, self.smoothing_s), heading, velocity)
+
+
+class _Readings(NamedTuple):
+    """Readings without the log's own errors, in its axes (m/s); present heading (rad) and velocity (m/s)."""
+
+    along_axes: np.ndarray
+    heading: np.ndarray
+    velocity: np.ndarray
 
 
 def _true_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
