@@ -12,6 +12,9 @@ from schuler_bench.views.diagram.forecast import forecast_svg
 from schuler_bench.views.diagram.membership import membership_svg
 from schuler_bench.views.diagram.svg import diagram_svg
 
+_LOOK_PX = 60
+"""Height of the line above the picture, with its margins."""
+
 
 class DiagramView(PictureView[str]):
     """The picture alone."""
@@ -42,7 +45,7 @@ class DiagramView(PictureView[str]):
         """Draw the loop of the selected method."""
         index = min(found.selected, len(found.run.methods) - 1)
         self._state = state_at(found.run.methods[index], self._time_s)
-        return _html(found.run, index, self._state)
+        return self._html(found.run, index, self._state)
 
     def show(self, picture: str) -> None:
         """Show the picture."""
@@ -57,7 +60,21 @@ class DiagramView(PictureView[str]):
         state = state_at(run.methods[index], t_s)
         if state != self._state:
             self._state = state
-            self.show(_html(run, index, state))
+            self.show(self._html(run, index, state))
+
+    def _html(self, run: Run, index: int, state: State) -> str:
+        """Loop of a method in a state, and beneath it what its figure is in the paper.
+
+        It is as wide as its panel, unless the azimuth channel or the paper's figure would then have no room.
+        """
+        found, paper = diagram(run.scenario, index, state), beneath(run, index)
+        room = (self.frame.layout().room_px - _LOOK_PX) / (2 if paper else 1)
+        return Text(
+            '<div class="sb-diagram" style="--room:{room:.0f}px">{svg}{beneath}</div>',
+            room=max(room, found.height),
+            svg=diagram_svg(found, style.method_color(index), state),
+            beneath=paper,
+        )
 
 
 def state_at(method: MethodRun, t_s: float) -> State:
@@ -67,16 +84,6 @@ def state_at(method: MethodRun, t_s: float) -> State:
     row = method.rows[max(int(method.t_s.searchsorted(t_s, "right")) - 1, 0)]
     coefficient = float(row[XI_COLUMN]) if method.method.policy.tunes else None
     return State(bool(row[DAMPED_COLUMN] > 0.5), coefficient)
-
-
-def _html(run: Run, index: int, state: State) -> str:
-    """Loop of a method in a state, as the page shows it, and beneath it what its figure is in the paper."""
-    svg = diagram_svg(diagram(run.scenario, index, state), style.method_color(index), state)
-    return Text(
-        '<div class="sb-diagram" style="padding:4px 10px">{svg}{beneath}</div>',
-        svg=svg,
-        beneath=beneath(run, index),
-    )
 
 
 def beneath(run: Run, index: int) -> str:
