@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from navcore.design.profile import Profile
     from navcore.design.sun import Tuning, TuningSettings
     from navcore.design.tune import Tuned
+    from navcore.study.model import Study
+    from navcore.study.robust import Robust
 
 Progress = Callable[[float], None]
 Cancelled = Callable[[], bool]
@@ -199,22 +201,43 @@ class Fronts(Search[FrontsTask, "Pareto"]):
         )
 
 
-class Limits(Search[Scenario, "Designs"]):
+@dataclass(frozen=True)
+class LimitsTask:
+    """A search for designs that meet the limits.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        With limits.
+    study : Study or None
+        Over whose factors they must hold.
+    """
+
+    scenario: Scenario
+    study: Study | None = None
+
+
+class Limits(Search[LimitsTask, "Designs | Robust"]):
     """Tunes every network for the limits of one scenario at a time; ``tell`` and ``name`` as of `Search`."""
 
     def __init__(self, tell: Callable[[], None], name: str = "limits") -> None:
         super().__init__(tell, _designs, stopped=Text("Stopped: no design."), name=name, keeps=True)
 
-    def beside(self, scenario: Scenario) -> Designs | None:
+    def beside(self, scenario: Scenario) -> Designs | Robust | None:
         """Designs for the same ship and limits; None when there are none."""
-        same = self.asked is not None and without_methods(self.asked) == without_methods(scenario)
+        asked = None if self.asked is None else self.asked.scenario
+        same = asked is not None and without_methods(asked) == without_methods(scenario)
         return self.result if same else None
 
 
-def _designs(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Designs:
+def _designs(task: LimitsTask, progress: Progress, cancelled: Cancelled) -> Designs | Robust:
     from navcore.design.designs import designs
 
-    return designs(scenario, progress=progress, cancelled=cancelled)
+    if task.study is None:
+        return designs(task.scenario, progress=progress, cancelled=cancelled)
+    from navcore.study.robust import robust_designs
+
+    return robust_designs(task.scenario, task.study, progress=progress, cancelled=cancelled)
 
 
 def _budget(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Budget:

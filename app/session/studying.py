@@ -22,6 +22,8 @@ PRESENT, UPLOADED = "", "uploaded"
 NOTHING = "nothing"
 """In the place of a second quantity that is varied."""
 LARGEST_TEXT = 200_000
+MOST_POINTS = 50
+"""Points of a study over which designs are judged on a page."""
 _MOST_VALUES = 300
 _OF_STUDIES = re.compile(
     r"^(?:\[\[ ?factor ?\]\]|\[(?:scenario|sample|output)\b|(?:scenario|seeds|constants) ?=)", re.MULTILINE
@@ -125,6 +127,24 @@ def chosen_task(session: Session) -> StudyTask:
     plan = Plan(study, where)
     require_small(plan)
     return StudyTask(study, where, plan.scenario, present)
+
+
+def study_of_designs(session: Session) -> Study:
+    """Study over whose points designs must hold: the one that the session's display chooses.
+
+    Raises
+    ------
+    InputError
+        It cannot be made, or has too many points for a page.
+    """
+    from navcore.study.plan import Plan
+
+    task = chosen_task(session)
+    points = Plan(task.study.model_copy(update={"seeds": 1}), task.where).runs
+    if points > MOST_POINTS:
+        allowed = Text("are {points} points; at most {most} on the page", points=points, most=MOST_POINTS)
+        raise InputError(Fault(task.where, "factor", None, allowed))
+    return task.study
 
 
 def run_scenario(task: StudyTask, number: int) -> Scenario:

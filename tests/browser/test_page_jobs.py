@@ -13,11 +13,12 @@ from navcore.quantities import QUANTITIES
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.jobs.designer import FrontsTask
+from schuler_bench.jobs.designer import FrontsTask, LimitsTask
 from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
-from schuler_bench.views.design.view import BUDGET_OF, CHOICES
+from schuler_bench.views.design.view import BUDGET_OF, CHOICES, OVER, PLACES
 from schuler_bench.views.design.view import FIND as FIND_DESIGNS
+from schuler_bench.views.design.view import STOP as STOP_DESIGNS
 from schuler_bench.views.study import view as study
 from schuler_bench.views.sweep.view import METRIC
 from schuler_bench.views.sweep.view import SWEEP as RUN_SWEEP
@@ -290,7 +291,7 @@ def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
     moving.button(FIND_DESIGNS).wait_for()
     before, limits = session.scenario, session.searches.limits
     # all networks take too long for a test
-    limits.result, limits.asked = designs(before, 2, as_set=True), before
+    limits.result, limits.asked = designs(before, 2, as_set=True), LimitsTask(before)
     limits._tell()
     take = page.locator("[data-design=classic2] .sb-take")
     take.wait_for()
@@ -299,6 +300,25 @@ def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
     assert session.scenario.method[2].network.id == "classic2"
     assert session.undo() and session.scenario == before
     limits.forget()
+
+
+def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -> None:
+    session, limits = short.session, short.session.searches.limits
+    short.tab("Design")
+    require(short, tilt_max_arcsec=12.0)
+    short.choose(OVER, PLACES["study"])
+    short.show(study_x="nothing-such", study_y="nothing")
+    short.button(FIND_DESIGNS).click()
+    short.page.get_by_text("The designs cannot be found").wait_for()
+    short.close_notices()
+    short.show(study_x="latitude")
+    short.button(FIND_DESIGNS).click()
+    short.button(STOP_DESIGNS).wait_for()
+    task = limits.under_way
+    assert task is not None and task.scenario == session.scenario
+    assert task.study is not None and [one.fields for one in task.study.factor] == [("site.lat_deg",)]
+    limits.cancel()
+    short.button(FIND_DESIGNS).wait_for()
 
 
 def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(designing: Bench) -> None:

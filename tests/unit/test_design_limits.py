@@ -12,11 +12,14 @@ from navcore.foundation.errors import InputError
 from navcore.scenario.file import load
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.study.crossed import crossed
+from navcore.study.robust import robust_designs
 from schuler_bench.editing.edits import with_design, with_value
 from schuler_bench.editing.limits import with_limit
 from schuler_bench.jobs import judge
-from schuler_bench.jobs.designer import Limits
+from schuler_bench.jobs.designer import Limits, LimitsTask
 from schuler_bench.jobs.judge import Judge, Odds
+from schuler_bench.plots.units import number
 from schuler_bench.session.requirements import asked
 from schuler_bench.views.design.limits import designs_html
 from schuler_bench.views.requirements.table import requirements_html
@@ -133,6 +136,21 @@ def test_the_table_has_a_row_a_method_with_share_limit_and_this_run(ship: Scenar
     assert "This scenario has no limits yet." in designs_html(none, lambda _: None, None)
 
 
+def test_over_a_study_the_table_shows_the_worst_point_and_what_it_costs(ship: Scenario) -> None:
+    run = simulate(ship)
+    study = crossed(ship, ["log_bias"], 3)
+    found = robust_designs(ship, study, 3, as_set=True)
+    html = designs_html(run, lambda _: None, found)
+    rows = re.findall(r'<tr data-design="([^"]*)" data-met="([^"]*)">(.*?)</tr>', html)
+    assert [name for name, _, _ in rows] == [one.method.label() for one in found.methods]
+    assert [float(met) for _, met, _ in rows] == [one.worst.met for one in found.methods]
+    for place, (one, (_, _, text)) in enumerate(zip(found.methods, rows, strict=True)):
+        assert f"take-design {place}" in text
+        assert f"this scenario {number(100.0 * one.nominal.met, 3)} %, all points " in text
+    assert f"the worst of {found.points} points" in html
+    assert f"Price: {number(100.0 * found.price, 3)} %" in html
+
+
 def test_a_design_takes_the_place_of_the_edited_method_or_stands_behind_a_free_one(ship: Scenario) -> None:
     kalman = Method(name="kalman", damping="kalman")
     changed, at = with_design(ship, 2, kalman)
@@ -147,7 +165,7 @@ def test_a_design_takes_the_place_of_the_edited_method_or_stands_behind_a_free_o
 def test_designs_are_of_one_ship_and_its_limits(ship: Scenario) -> None:
     limits = Limits(lambda: None)
     try:
-        limits.result, limits.asked = Designs(1, (), ()), ship
+        limits.result, limits.asked = Designs(1, (), ()), LimitsTask(ship)
         changed = with_value(ship, ("method", 2, "network", "zeta"), 0.6)
         assert limits.beside(changed) is limits.result
         assert limits.beside(with_limit(ship, "tilt_max_arcsec", "1")) is None

@@ -1,9 +1,11 @@
 """Which methods meet the limits, and with what probability: one row a method, as HTML."""
 
-from collections.abc import Callable, Sequence
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from navcore.design.designs import Designs
 from navcore.design.measures import Setting
@@ -19,9 +21,13 @@ from schuler_bench.plots.effective import growth_text
 from schuler_bench.plots.limits import SIGNS, limit_words, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
+from schuler_bench.plots.varied import value_text, varied_label
 from schuler_bench.session.requirements import asked, limits_of
 from schuler_bench.views.requirements.shares import share_text
 from schuler_bench.views.tune.fronts import setting_text
+
+if TYPE_CHECKING:
+    from navcore.study.robust import Robust
 
 TAKE_DESIGN = "take-design"
 """Command that puts a design into the method that is edited: ``take-design 3``, its place."""
@@ -58,6 +64,8 @@ class Line:
         Of a design that can be taken.
     growth : float or None
         Of the whole system, 1/s.
+    beside : str
+        Shares elsewhere than where ``odds`` are counted.
     """
 
     method: Method
@@ -65,10 +73,11 @@ class Line:
     run: str = ""
     place: int | None = None
     growth: float | None = None
+    beside: str = ""
 
 
 def designs_html(
-    run: Run, odds: Callable[[Method], Odds | None], found: Designs | None, note: str = ""
+    run: Run, odds: Callable[[Method], Odds | None], found: Designs | Robust | None, note: str = ""
 ) -> str:
     """Table of the scenario's methods and of the designs that were found, best first.
 
@@ -78,7 +87,7 @@ def designs_html(
         Of the scenario, which has limits.
     odds : callable
         Shares of its methods.
-    found : Designs or None
+    found : Designs, Robust or None
         Of the same scenario.
     note : str
         HTML above the table.
@@ -92,17 +101,42 @@ def designs_html(
     ]
     head = row(cell(quoted(text), tag="th") for text in _HEADS)
     body = [_title(Text("Methods of this scenario")), *map(_line, own)]
-    if found is not None:
+    if isinstance(found, Designs):
         designs = [
             Line(share.method, Odds(share, found.seeds), "", place, growth_of(run.scenario, share.method))
             for place, share in enumerate(found.methods)
         ]
         body += [_title(_STOPPED if found.stopped else _TUNED), *map(_line, designs)]
+    elif found is not None:
+        body += [_title(_robust_title(found)), *map(_line, _robust_lines(run, found))]
     limits = limits_of(run.scenario.requirement)
     words = Text.joined(", ", (limit_words(key, limit, short_label(key)) for key, limit in limits.items()))
     said = Text("Limits: {asked}.", asked=words)
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
+
+
+def _robust_title(found: Robust) -> str:
+    """What the rows are, and what the most robust one costs in the scenario itself."""
+    factors = found.methods[0].where.items()
+    where = Text.joined(
+        ", ", (Text("{name} = {value}", name=varied_label(key), value=value_text(at)) for key, at in factors)
+    )
+    return Text(
+        "Every network, tuned for the worst of {points} points of the study, and there; the first is worst "
+        "with {where}. Price: {price} % of the seeds of this scenario",
+        points=found.points,
+        where=where,
+        price=number(100.0 * found.price, 3),
+    )
+
+
+def _robust_lines(run: Run, found: Robust) -> Iterator[Line]:
+    for place, one in enumerate(found.methods):
+        here, everywhere = (number(100.0 * met, 3) for met in (one.nominal.met, one.met))
+        beside = Text("this scenario {here} %, all points {everywhere} %", here=here, everywhere=everywhere)
+        odds, growth = Odds(one.worst, found.seeds), growth_of(run.scenario, one.method)
+        yield Line(one.method, odds, "", place, growth, beside)
 
 
 def _title(text: str) -> str:
@@ -134,6 +168,7 @@ def _line(line: Line) -> str:
             title=Text("{seeds} seeds, each with its own noise and constants", seeds=odds.seeds),
         )
         worst = _worst(one.limits, one.diverged)
+        share += cell(quoted(line.beside), "sb-muted", tag="div") if line.beside else ""
     button = ""
     if line.place is not None:
         button = Text(

@@ -3,18 +3,21 @@
 from typing import Any
 
 from navcore.design.budget import Budget
+from navcore.design.shares import Share
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
+from schuler_bench.jobs.designer import LimitsTask
 from schuler_bench.jobs.judge import Odds
 from schuler_bench.plots.budgets import steady_budget
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.session.shown import Shown
+from schuler_bench.session.studying import study_of_designs
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.plotly_view import PlotlyView
-from schuler_bench.shell.searching import SearchControls, show_html
+from schuler_bench.shell.searching import SearchControls, reveal, show_html
 from schuler_bench.shell.view import Figures, Frame, if_user
 from schuler_bench.views.design.figure import budget_figure
 from schuler_bench.views.design.limits import TAKE_DESIGN, designs_html
@@ -25,6 +28,8 @@ CHOICES = {
     "steady": Text("budget of the steady state, one level channel"),
     "run": Text("budget of this run, all sources"),
 }
+OVER = Text("over")
+PLACES = {"scenario": Text("this scenario"), "study": Text("every point of the tab Study")}
 FIND, STOP = Text("Find designs for these limits"), Text("Stop finding designs")
 
 
@@ -68,7 +73,21 @@ class DesignView(PlotlyView):
         )
         words = {word: key for key, word in CHOICES.items()}
         self._chooser.on_update(if_user(lambda: self.frame.show(budget=words[self._chooser.value])))
-        hint = Text("Tunes every network for the limits, then runs each on 200 seeds: up to a minute.")
+        self._over: Any = self.frame.gui.add_dropdown(
+            OVER,
+            tuple(PLACES.values()),
+            initial_value=PLACES[self.session.display.design_over],
+            hint=Text(
+                "Where designs must meet the limits: in this scenario, or at the worst point of what the tab "
+                "Study varies."
+            ),
+        )
+        places = {word: key for key, word in PLACES.items()}
+        self._over.on_update(if_user(lambda: self.frame.show(design_over=places[self._over.value])))
+        hint = Text(
+            "Tunes every network for the limits, then runs each on 200 seeds, or on 40 at every point of a "
+            "study: up to a minute, or several."
+        )
         self._controls = SearchControls(self.frame.gui, self._limits, self._find, (FIND, STOP), hint)
         self._table = self.frame.gui.add_html("", visible=False)
         self.follow_jobs()
@@ -76,6 +95,7 @@ class DesignView(PlotlyView):
     def follow_display(self) -> None:
         """Show the display's choice."""
         self._chooser.value = CHOICES[self.session.display.budget]
+        self._over.value = PLACES[self.session.display.design_over]
         self.follow_jobs()
         if self.session.run is not None:
             self._ask(self.session.run.scenario)
@@ -94,7 +114,9 @@ class DesignView(PlotlyView):
 
     def follow_jobs(self) -> None:
         """Show how far the search for designs is."""
-        self._controls.follow(self._of_limits and bool(self.session.scenario.requirement))
+        wanted = self._of_limits and bool(self.session.scenario.requirement)
+        self._controls.follow(wanted)
+        reveal((self._over, wanted))
 
     def take_new(self) -> bool:
         """Whether shares, designs or the budget of the run have just been computed."""
@@ -150,9 +172,11 @@ class DesignView(PlotlyView):
 
     def _find(self) -> None:
         """Tune every network for the limits."""
-        with self.session.lock:
-            scenario = self.session.scenario
-        self._limits.begin(scenario)
+        session = self.session
+        with notices.told(self.frame.client, Text("The designs cannot be found"), self.frame.refresh):
+            with session.lock:
+                scenario, over = session.scenario, session.display.design_over
+            self._limits.begin(LimitsTask(scenario, study_of_designs(session) if over == "study" else None))
 
     def _take(self, text: str) -> None:
         """Put the design with this place into the method that is edited."""
@@ -165,7 +189,8 @@ class DesignView(PlotlyView):
             title = Text("The design cannot be used")
             with notices.told(self.frame.client, title, self.frame.refresh):
                 changed, at = edits.with_design(session.scenario, session.selected, share.method)
-                self._judge.learn(changed, changed.method[at], Odds(share, found.seeds))
+                here = share if isinstance(share, Share) else share.nominal
+                self._judge.learn(changed, changed.method[at], Odds(here, found.seeds))
                 name = Text("{name} from Design", name=share.method.label())
                 session.change(changed, None, name=name, selected=at)
 
