@@ -4,16 +4,17 @@ Only whole sentences with a right checksum are used; a file in which too many ar
 backwards, is refused rather than used in part.
 """
 
+from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_lines
-from navcore.io.nmea_sentences import KINDS, Reading, decode, doubt_of, is_used
+from navcore.io.nmea_sentences import KINDS, decode, is_used
 from navcore.io.source import read_text
 
 MOST_BAD_CHECKSUMS = 0.2
@@ -27,6 +28,9 @@ MOST_SOURCES = 8
 _CLOCK_WARNING_S = 5.0
 _MOST_NAMED = 12
 _LOGGED_DAY = "UNIXD"
+
+
+Row = tuple[Any, ...]
 
 
 class Channel(NamedTuple):
@@ -43,14 +47,15 @@ class NmeaLog:
     Attributes
     ----------
     readings : dict
-        By channel: list of (UTC in s, reading).
+        By channel: list of UTC in s and the fields of a `Reading`, as plain tuples, which the collector of
+        garbage need not look through.
     tally : Tally
         Counts of lines and faults.
     warnings : tuple of str
         What was left out or looks odd.
     """
 
-    readings: dict[Channel, list[tuple[float, Reading]]]
+    readings: dict[Channel, list[Row]]
     tally: Tally
     warnings: tuple[str, ...]
 
@@ -65,29 +70,28 @@ def read_nmea(path: Path) -> NmeaLog:
     """
     content = read_text(path)
     tally = Tally()
-    readings: dict[Channel, list[tuple[float, Reading]]] = {}
+    readings: defaultdict[Channel, list[Row]] = defaultdict(list)
     clock = Clock(content.text, path.name, tally)
     latest: dict[Channel, float] = {}
-    for line in intact_lines(content.text, tally):
-        if line.address == _LOGGED_DAY:
-            clock.logged(line.sentence)
-        reading = decode(line.sentence, line.address)
-        if reading is None and is_used(line.address):
+    for number, stamp, source, address, sentence in intact_lines(content.text, tally):
+        if address == _LOGGED_DAY:
+            clock.logged(sentence)
+        reading = decode(sentence, address)
+        if reading is None and is_used(address):
             tally.unparsable += 1
             continue
-        name = tally.count(tally.intact, line.address)
-        if reading is not None and reading.valid and (doubt := doubt_of(line.sentence, line.address[2:])):
-            tally.doubts[line.address, doubt] += 1
-        time_s = clock.time_of(line.stamp, reading)
+        name = tally.count(tally.intact, address)
+        if reading is not None and reading.doubt:
+            tally.doubts[address, reading.doubt] += 1
+        time_s = clock.time_of(stamp, reading)
         if time_s is None:
             tally.untimed += reading is not None
             continue
-        channel = Channel(line.source, line.address)
         if reading is None or reading.says_nothing:
-            tally.times.setdefault(name, []).append(time_s)
-        elif _in_order(line.number, channel, time_s, latest, tally):
-            tally.times.setdefault(name, []).append(time_s)
-            readings.setdefault(channel, []).append((time_s, reading))
+            tally.times[name].append(time_s)
+        elif _in_order(number, channel := Channel(source, address), time_s, latest, tally):
+            tally.times[name].append(time_s)
+            readings[channel].append((time_s, *reading))
     _refuse_unusable(path, tally, readings)
     warnings = (*content.warnings(), *_warnings(tally))
     return NmeaLog(_of_instruments(readings), tally, warnings)
@@ -109,19 +113,17 @@ def _in_order(
     return False
 
 
-def _of_instruments(
-    readings: dict[Channel, list[tuple[float, Reading]]],
-) -> dict[Channel, list[tuple[float, Reading]]]:
+def _of_instruments(readings: dict[Channel, list[Row]]) -> dict[Channel, list[Row]]:
     """Join what only the words beside the sentences keep apart, when these are no instruments' names."""
     if len({channel.source for channel in readings}) <= MOST_SOURCES:
         return readings
-    joined: dict[Channel, list[tuple[float, Reading]]] = {}
+    joined: dict[Channel, list[Row]] = {}
     for channel, rows in readings.items():
         joined.setdefault(Channel("", channel.address), []).extend(rows)
     return joined
 
 
-def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tuple[float, Reading]]]) -> None:
+def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[Row]]) -> None:
     def refuse(allowed: str, line: int = 0) -> InputError:
         where = Text("{name}, line {line}", name=path.name, line=line) if line else path.name
         return InputError(Fault(where, "", None, allowed))

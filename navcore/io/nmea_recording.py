@@ -30,7 +30,11 @@ def read(path: Path) -> Recording:
         stream_report(address, count, address in used, tally.times.get(address, ()))
         for address, count in tally.intact.most_common()
     )
-    invalid = sum(not _all_valid(reading) for rows in log.readings.values() for _, reading in rows)
+    invalid = sum(
+        not valid or (water is not None and not water[2]) or (ground is not None and not ground[2])
+        for rows in log.readings.values()
+        for _, _, _, _, _, water, ground, _, valid, _ in rows
+    )
     flagged = (
         [Text("{invalid} readings flagged invalid by the instrument", invalid=invalid)] if invalid else []
     )
@@ -61,13 +65,9 @@ _HEADINGS = ("HDT", "THS", "PASHR", "PSXN", "PRDID", "VHW", "HDG")
 """Kinds that give the heading, the better ones first."""
 
 
-def _all_valid(reading: Reading) -> bool:
-    return reading.valid and all(axes is None or axes[2] for axes in (reading.water, reading.ground))
-
-
 def _rows(log: NmeaLog, channel: Channel, quantity: str) -> Rows:
-    rows = ((time_s, getattr(reading, quantity)) for time_s, reading in log.readings.get(channel, ()))
-    return [(t, v if isinstance(v, tuple) else (v,)) for t, v in rows if v is not None]
+    place, rows = 1 + Reading._fields.index(quantity), log.readings[channel]
+    return [(r[0], v if isinstance(v, tuple) else (v,)) for r in rows if (v := r[place]) is not None]
 
 
 def _pick(log: NmeaLog, kinds: Iterable[str], quantity: str) -> tuple[str, Rows]:

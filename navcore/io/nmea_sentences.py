@@ -15,10 +15,14 @@ from navcore.io.stamps import midnight
 
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
-_NOTHING = (None,) * 5
+_NOTHING = (*(None,) * 5, True)
 _LEFT_OUT = [""] * 12
 _TIME = re.compile(r"(?:[01]\d|2[0-3])[0-5]\d[0-5]\d(?:\.\d*)?")
 _DEGREES = re.compile(r"(\d+)(\d\d\.\d+)")
+_remembered = lru_cache(maxsize=4096)
+"""Fields repeat: a second stands in several sentences, and instruments round."""
+_QUALITIES = {"6": "dead-reckoned", "7": "manual", "8": "simulated"}
+_MODES = {"E": "dead-reckoned", "M": "manual", "S": "simulated"}
 
 
 class Reading(NamedTuple):
@@ -40,6 +44,8 @@ class Reading(NamedTuple):
         rad, from true north.
     valid : bool
         False when the receiver calls the whole sentence invalid (nothing else is filled in then).
+    doubt : str
+        What the receiver calls a fix that it did not measure: dead-reckoned, manual, simulated; else empty.
     """
 
     time_of_day: float | None = None
@@ -50,11 +56,12 @@ class Reading(NamedTuple):
     ground: tuple[float, float, bool] | None = None
     heading: float | None = None
     valid: bool = True
+    doubt: str = ""
 
     @property
     def says_nothing(self) -> bool:
         """Whether it holds no more than a time."""
-        return self.valid and self[2:7] == _NOTHING
+        return self[2:8] == _NOTHING
 
 
 def _number(value: str, low: float, high: float) -> float | None:
@@ -67,11 +74,13 @@ def _number(value: str, low: float, high: float) -> float | None:
     return number
 
 
+@_remembered
 def _speed(value: str, unit: float = KNOT) -> float | None:
     number = _number(value, -_FASTEST / unit, _FASTEST / unit)
     return None if number is None else number * unit
 
 
+@_remembered
 def _heading(value: str) -> float | None:
     degrees = _number(value, 0.0, 360.0)
     return None if degrees is None else (degrees % 360.0) * DEG
@@ -108,7 +117,7 @@ def _vhw(fields: list[str]) -> Reading:
 def _vtg(fields: list[str]) -> Reading:
     if fields[8] == "N":
         return Reading(valid=False)
-    return Reading(velocity=_over_ground(fields[0], fields[4], fields[6]))
+    return Reading(velocity=_over_ground(fields[0], fields[4], fields[6]), doubt=_doubt(fields[8]))
 
 
 def _seconds(field: str) -> float:
@@ -116,6 +125,7 @@ def _seconds(field: str) -> float:
     return int(field[:2]) * 3600.0 + int(field[2:4]) * 60.0 + float(field[4:])
 
 
+@_remembered
 def _time_of_day(field: str) -> float:
     """UTC of a standard sentence, s: a time that a clock can show."""
     if _TIME.fullmatch(field) is None:
@@ -123,6 +133,7 @@ def _time_of_day(field: str) -> float:
     return _seconds(field)
 
 
+@_remembered
 def _day(field: str) -> float:
     """UTC midnight of ``ddmmyy``, s since 1970."""
     if len(field) != 6 or not field[4:].isdigit():
@@ -139,16 +150,24 @@ def _angle(field: str, side: str, positive: str, negative: str, most: float) -> 
     return (degrees if side == positive else -degrees) * DEG
 
 
-def _place(fields: list[str], height: float) -> tuple[float, float, float]:
-    """Latitude, its side, longitude and its side."""
-    lat, north, lon, east = fields
-    return _angle(lat, north, "N", "S", 90.0), _angle(lon, east, "E", "W", 180.0), height
+@_remembered
+def _place(lat: str, north: str, lon: str, east: str) -> tuple[float, float]:
+    """Latitude and longitude of both with their sides."""
+    return _angle(lat, north, "N", "S", 90.0), _angle(lon, east, "E", "W", 180.0)
 
 
+@_remembered
 def _height(altitude: str, separation: str) -> float:
     """Height above the ellipsoid, m; NaN where it is not given."""
     above, geoid = _number(altitude, -1e4, 1e5), _number(separation, -200.0, 200.0)
     return math.nan if above is None else above + (geoid or 0.0)
+
+
+@_remembered
+def _doubt(modes: str) -> str:
+    """What the letters of a receiver's mode, one a system, say of the fix when all agree."""
+    said = set(modes) - {"N"}
+    return _MODES.get(said.pop(), "") if len(said) == 1 else ""
 
 
 def _rmc(fields: list[str]) -> Reading:
@@ -157,16 +176,19 @@ def _rmc(fields: list[str]) -> Reading:
     return Reading(
         time_of_day=_time_of_day(fields[0]),
         day=_day(fields[8]) if fields[8] else None,
-        position=_place(fields[2:6], math.nan),
+        position=(*_place(*fields[2:6]), math.nan),
         velocity=_over_ground(fields[7], fields[6]),
+        doubt=_doubt(fields[11]),
     )
 
 
 def _gga(fields: list[str]) -> Reading:
-    if not fields[5] or int(fields[5]) == 0:
+    quality = fields[5]
+    if not quality or int(quality) == 0:
         return Reading(valid=False)
-    height = _height(fields[8], fields[10])
-    return Reading(time_of_day=_time_of_day(fields[0]), position=_place(fields[1:5], height))
+    position = *_place(*fields[1:5]), _height(fields[8], fields[10])
+    doubt = _QUALITIES.get(quality, "")
+    return Reading(time_of_day=_time_of_day(fields[0]), position=position, doubt=doubt)
 
 
 def _hdt(fields: list[str]) -> Reading:
@@ -179,14 +201,15 @@ def _gll(fields: list[str]) -> Reading:
     if fields[5] != "A" and not oldest:
         return Reading(valid=False)
     time_s = None if oldest else _time_of_day(fields[4])
-    return Reading(time_of_day=time_s, position=_place(fields[:4], math.nan))
+    position = *_place(*fields[:4]), math.nan
+    return Reading(time_of_day=time_s, position=position, doubt=_doubt(fields[6]))
 
 
 def _gns(fields: list[str]) -> Reading:
     if not set(fields[5] or "N") - {"N"}:
         return Reading(valid=False)
-    height = _height(fields[8], fields[9])
-    return Reading(time_of_day=_time_of_day(fields[0]), position=_place(fields[1:5], height))
+    position = *_place(*fields[1:5]), _height(fields[8], fields[9])
+    return Reading(time_of_day=_time_of_day(fields[0]), position=position, doubt=_doubt(fields[5]))
 
 
 def _zda(fields: list[str]) -> Reading:
@@ -260,43 +283,29 @@ KINDS = ", ".join((*sorted(_STANDARD | _WHOLE), *_MAKERS))
 """Sentences that can be read, for messages."""
 
 
-_MODE_FIELD = {"RMC": 11, "GLL": 6, "VTG": 8, "GNS": 5}
-_DOUBTS = {"6": "dead-reckoned", "7": "manual", "8": "simulated", "E": "dead-reckoned", "M": "manual"}
-_DOUBTS["S"] = _DOUBTS["8"]
-_DOUBTED = frozenset(("GGA", *_MODE_FIELD))
-
-
-def doubt_of(sentence: str, kind: str) -> str:
-    """What a receiver says of a fix that it did not measure: dead-reckoned, manual, simulated; else empty.
-
-    By the quality of GGA (6 to 8) and the mode of RMC, GLL, VTG and GNS (E, M, S; GNS: of every system).
-    """
-    if kind not in _DOUBTED:
-        return ""
-    fields = sentence.partition("*")[0].split(",")[1:]
-    if kind == "GGA":
-        return _DOUBTS.get(fields[5], "") if len(fields) > 5 and fields[5].isdigit() else ""
-    at = _MODE_FIELD[kind]
-    modes = set(fields[at]) - {"N"} if at < len(fields) else set()
-    return _DOUBTS.get(modes.pop(), "") if len(modes) == 1 and not modes & set("678") else ""
-
-
 @lru_cache(maxsize=1024)
+def _decoder(address: str) -> tuple[Callable[[list[str]], Reading], list[str]] | None:
+    """Decoder of a used kind, and the fields that may be left out; None for other kinds."""
+    kind = address[2:] if len(address) == 5 and address[0] != "P" else ""
+    if kind in _STANDARD:
+        return _STANDARD[kind], _LEFT_OUT
+    found = _MAKERS.get(address) or _WHOLE.get(kind)
+    return (found, []) if found else None
+
+
 def is_used(address: str) -> bool:
     """Whether sentences of this address are decoded."""
-    kind = address[2:]
-    standard = len(address) == 5 and address[0] != "P" and (kind in _STANDARD or kind in _WHOLE)
-    return standard or address in _MAKERS
+    return _decoder(address) is not None
 
 
 def decode(sentence: str, address: str) -> Reading | None:
     """Reading of a sentence of a used kind; None for other kinds and for nonsense in its fields."""
-    if not is_used(address):
+    found = _decoder(address)
+    if found is None:
         return None
-    fields, kind = sentence.partition("*")[0].split(",")[1:], address[2:]
+    decoder, left_out = found
+    fields = sentence.partition("*")[0].split(",")[1:]
     try:
-        if fields and address not in _MAKERS and kind in _STANDARD:
-            return _STANDARD[kind](fields + _LEFT_OUT)
-        return (_MAKERS.get(address) or _WHOLE[kind])(fields)
+        return decoder(fields + left_out) if fields else None
     except (ValueError, TypeError, LookupError, OverflowError):
         return None

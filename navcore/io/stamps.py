@@ -15,9 +15,9 @@ No expression here repeats a group, and every repetition is bounded, so that eac
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
+from typing import NamedTuple
 
 from navcore.foundation.text import Text
 
@@ -36,8 +36,7 @@ _FARTHEST_ZONE_S = 15 * 3600.0
 _DAY = 86400.0
 
 
-@dataclass(frozen=True, slots=True)
-class Stamp:
+class Stamp(NamedTuple):
     """A stamp that was read.
 
     Attributes
@@ -152,7 +151,7 @@ def _clock_s(match: re.Match[str]) -> float:
 
 def _iso(text: str) -> float | None:
     """UTC of ``2018-12-06T00:00:00.6208Z`` and the like, the form of most loggers; None for all others."""
-    if text[-1:] != "Z" or text[4:5] != "-" or text[13:14] != ":":
+    if len(text) < 14 or text[-1] != "Z" or text[4] != "-" or text[13] != ":":
         return None
     try:
         return datetime.fromisoformat(text).timestamp()
