@@ -102,8 +102,8 @@ class Container:
         if faults:
             raise InputError(faults)
         rows = max(self._part(index).rows for index in wanted)
-        _refuse_size(self.path.name, rows, len(wanted), self._unpacked(wanted), most_cells)
         with refusing(self.path.name, self.kind):
+            _refuse_size(self.path.name, rows, len(wanted), self._unpacked(wanted), most_cells)
             return self._read(wanted)
 
     def _part(self, index: int) -> Part:

@@ -34,7 +34,7 @@ def candidates(names: Sequence[str], columns: dict[str, Column]) -> dict[str, li
     """Columns that may hold the hemisphere of latitude and longitude: so named first, then the next one."""
     used = {column.index for column in columns.values()}
     found: dict[str, list[int]] = {}
-    for stem in _SIDES.keys() & columns.keys():
+    for stem in (stem for stem in _SIDES if stem in columns):
         named = [
             i
             for i, name in enumerate(names)
