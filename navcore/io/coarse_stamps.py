@@ -21,7 +21,7 @@ def spread(time_s: np.ndarray) -> tuple[np.ndarray, int]:
         Median number of rows of a stamp.
     """
     steps = np.diff(time_s)
-    if time_s.size < _FEWEST_STAMPS or not np.all(steps >= 0.0):
+    if time_s.size < _FEWEST_STAMPS or not np.all(steps >= 0.0) or np.all(steps > 0.0):
         return time_s, 1
     stamps, counts = np.unique(time_s, return_counts=True)
     each = int(np.median(counts))

@@ -1,36 +1,29 @@
-"""Text tables of a recorded IMU: header, units and time found; pyarrow's CSV reader reads the numbers."""
+"""Tables of a recorded IMU: header, columns, units and time found."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import STANDARD_GRAVITY
-from navcore.io.cells import is_number, times
+from navcore.io.cells import times
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns, plain_name
 from navcore.io.columns import MOST_COLUMNS, listed
 from navcore.io.containers import MOST_UNPACKED_BYTES, Container
 from navcore.io.epochs import numeric_times
 from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
+from navcore.io.imu_rows import COMMENTS, FIELD, HEAD_BYTES, Header, Wanted, read_rows, unix_text
 from navcore.io.mapped_rows import mapped_layout, skipped_text
 from navcore.io.mapped_times import MappedClock
 from navcore.io.written_units import UNITS
 
-if TYPE_CHECKING:
-    import pyarrow
-
-FIELD = "imu.file"
-"""Field that faults name."""
-_COMMENTS = ("#", "%", "//")
 _SEPARATORS = ",;\t|"
 _HEAD_LINES = 60
-_HEAD_BYTES = 65536
 _CLOCKS = (SECONDS, UNIX, UTC)
 _FEWEST_NAMED = 2
 _FEWEST_SAMPLES = 2
@@ -40,6 +33,7 @@ _SLOWEST_S = 2.0
 """A column of time without a unit whose steps are longer may be in ms, us or ns."""
 _DATED_FROM_S = 1e8
 _GRAVITY_SHARE = 0.05
+_LARGEST = 1e20
 _FORCE_UNITS = {unit: UNITS["force"][unit] for unit in ("mps2", "g", "mg")}
 
 
@@ -67,14 +61,6 @@ class ImuTable(NamedTuple):
     kind: str = "CSV"
 
 
-class _Header(NamedTuple):
-    """Where the header stands, and what it says."""
-
-    line: int
-    separator: str
-    names: list[str]
-
-
 def is_imu_table(head: str) -> bool:
     """Whether the first lines of a text hold a header that names an IMU's quantities."""
     return is_imu_names(_header(head).names)
@@ -88,17 +74,18 @@ def is_imu_names(names: Sequence[str]) -> bool:
     return len(found) >= _FEWEST_NAMED and not known_columns(names).keys() & QUANTITIES.keys()
 
 
-def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) -> ImuTable:
-    """Read a table whose header may stand in a comment or below a title; by a map, or by its names.
+def read_imu_table(content: bytes, source: str, column_map: ColumnMap | None = None) -> ImuTable:
+    """Read a table in UTF-8 whose header may stand in a comment or below a title; by a map, or by its names.
 
     Raises
     ------
     InputError
         A column is missing or its unit is not known (names the columns found), or a row is no row of numbers.
     """
-    header = _header(text) if column_map is None else _mapped_header(text, column_map)
+    head = unix_text(content[:HEAD_BYTES])
+    header = _header(head) if column_map is None else _mapped_header(head, column_map)
     wanted = _wanted(source, header.names, column_map)
-    cells, raw, skipped = _numbers(text, header, wanted, source)
+    cells, raw, skipped = read_rows(content, header, wanted, source)
     return _of_numbers(source, wanted, cells, raw, skipped)
 
 
@@ -115,15 +102,13 @@ def read_imu_container(held: Container, source: str, column_map: ColumnMap | Non
     if len(sizes) != 1 or {cell.size for cell in cells} - sizes - {1}:
         raise InputError(Fault(source, FIELD, None, Text("the columns differ in length")))
     size = sizes.pop()
-    if size < _FEWEST_SAMPLES:
-        raise InputError(Fault(source, FIELD, None, Text("holds fewer than two samples")))
     if len(cells) == 1 and cells[0].size == 1 and cells[0].dtype.kind in "iuf":
         cells = [float(cells[0][0]) * np.arange(1, size + 1)]
-    raw = np.column_stack([read[place][0].astype(float) for place in places])
+    raw = np.column_stack([read[place][0].astype(float, copy=False) for place in places])
     return _of_numbers(source, wanted, cells, raw, [])._replace(kind=held.kind)
 
 
-def _wanted(source: str, names: Sequence[str], column_map: ColumnMap | None) -> _Wanted:
+def _wanted(source: str, names: Sequence[str], column_map: ColumnMap | None) -> Wanted:
     """Columns of time and of the quantities; raises `InputError` where one is missing."""
     found = imu_columns(names) if column_map is None else column_map.imu_columns(source, list(names))
     kinds, clock = _kinds(found), _clock(names, column_map)
@@ -132,52 +117,64 @@ def _wanted(source: str, names: Sequence[str], column_map: ColumnMap | None) -> 
     columns = [found[kind, axis] for kind in kinds for axis in AXES]
     _refuse_unknown(source, [*columns, clock])
     clocks = [clock.index] if column_map is None else column_map.clocks(source, list(names))
-    return _Wanted(clock, clocks, columns, kinds != PAIRS[0], column_map)
+    return Wanted(clock, clocks, columns, kinds != PAIRS[0], column_map)
 
 
 def _of_numbers(
-    source: str, wanted: _Wanted, cells: list[np.ndarray], raw: np.ndarray, skipped: list[int]
+    source: str, wanted: Wanted, cells: list[np.ndarray], raw: np.ndarray, skipped: list[int]
 ) -> ImuTable:
-    """Columns of time and the six others, shape (n, 6), in SI."""
+    """Columns of time and the six others, shape (n, 6), turned to SI in place."""
+    if len(raw) < _FEWEST_SAMPLES:
+        raise InputError(Fault(source, FIELD, None, Text("holds fewer than two samples")))
     if wanted.column_map is not None and wanted.column_map.time.stated:
         time_s, told = _mapped_seconds(cells, wanted.column_map, source)
     else:
         time_s, told = _seconds(cells[0], wanted.clock, source)
-    lost = np.flatnonzero(~np.isfinite(raw).all(axis=1) | ~np.isfinite(time_s))
-    if lost.size:
-        what = Text(
-            "{size} samples are NaN or infinite, the first at sample {lost}", size=lost.size, lost=lost[0] + 1
-        )
-        raise InputError(Fault(source, FIELD, None, what))
+    refuse_lost(source, raw, time_s)
     told += [skipped_text(skipped)] if skipped else []
     factors, guessed = _factors(wanted.columns, raw, source)
     if abs(time_s[0]) >= _DATED_FROM_S:
         time_s = time_s - time_s[0]
-    return ImuTable(time_s, raw * factors, wanted.increments, (*told, *guessed))
+    raw *= factors
+    return ImuTable(time_s, raw, wanted.increments, (*told, *guessed))
+
+
+def refuse_lost(source: str, *arrays: np.ndarray) -> None:
+    """Refuse samples, the rows of arrays of numbers, that are NaN or larger than any reading."""
+    if all(values.size and values.min() > -_LARGEST and values.max() < _LARGEST for values in arrays):
+        return
+    known = [np.abs(values.reshape(len(values), -1)) < _LARGEST for values in arrays]
+    lost = np.flatnonzero(~np.column_stack(known).all(axis=1))
+    what = Text(
+        "{size} samples are NaN or infinite, the first at sample {lost} (1e20 and more counts as infinite)",
+        size=lost.size,
+        lost=lost[0] + 1,
+    )
+    raise InputError(Fault(source, FIELD, None, what))
 
 
 def imu_layout(text: str) -> tuple[str, str, list[str]]:
     """Separator, header line and header cells of a text."""
     header = _header(text)
-    return header.separator, text[:_HEAD_BYTES].split("\n")[header.line], header.names
+    return header.separator, text[:HEAD_BYTES].split("\n")[header.line], header.names
 
 
-def _header(text: str) -> _Header:
+def _header(text: str) -> Header:
     """The line among the first that names most of an IMU's columns; else the first one that is no comment."""
     best, most = None, 0
     plain = None
-    for at, line in enumerate(text[:_HEAD_BYTES].split("\n")[:_HEAD_LINES]):
-        bare = line.strip().lstrip("#%/ ") if line.lstrip().startswith(_COMMENTS) else line.strip()
+    for at, line in enumerate(text[:HEAD_BYTES].split("\n")[:_HEAD_LINES]):
+        bare = line.strip().lstrip("#%/ ") if line.lstrip().startswith(COMMENTS) else line.strip()
         separator = max(_SEPARATORS, key=bare.count)
         separator = separator if bare.count(separator) else " "
         names = [name.strip().strip('"') for name in bare.split(None if separator == " " else separator)]
-        header = _Header(at, separator, names[:MOST_COLUMNS])
+        header = Header(at, separator, names[:MOST_COLUMNS])
         if plain is None and bare:
             plain = header
         count = len(imu_columns(header.names))
         if count > most:
             best, most = header, count
-    return best or plain or _Header(0, ",", [])
+    return best or plain or Header(0, ",", [])
 
 
 def _kinds(found: dict[tuple[str, str], ImuColumn]) -> tuple[str, str] | None:
@@ -185,10 +182,10 @@ def _kinds(found: dict[tuple[str, str], ImuColumn]) -> tuple[str, str] | None:
     return next((p for p in PAIRS if all((kind, axis) in found for kind in p for axis in AXES)), None)
 
 
-def _mapped_header(text: str, column_map: ColumnMap) -> _Header:
-    lines = text[:_HEAD_BYTES].split("\n")[:_HEAD_LINES]
+def _mapped_header(text: str, column_map: ColumnMap) -> Header:
+    lines = text[:HEAD_BYTES].split("\n")[:_HEAD_LINES]
     separator, line, names = mapped_layout(lines, column_map)
-    return _Header(lines.index(line) if line else 0, separator, [name.strip() for name in names])
+    return Header(lines.index(line) if line else 0, separator, [name.strip() for name in names])
 
 
 def _clock(names: Sequence[str], column_map: ColumnMap | None) -> Column | None:
@@ -284,109 +281,11 @@ def _seconds(cells: np.ndarray, clock: Column, source: str) -> tuple[np.ndarray,
         scale = (ends[1] - ends[0]) / span if span else 1.0
         numbers = (cells - cells[0]).astype(float) * float(f"{scale:.3g}")
     else:
-        numbers, _, told = numeric_times(source, clock, cells.astype(float))
-    step = float(np.median(np.diff(numbers))) if numbers.size > 1 else 0.0
-    if step > _SLOWEST_S and not clock.unit and clock.stem != SECONDS:
+        numbers, _, told = numeric_times(source, clock, cells.astype(float, copy=False))
+    if clock.unit or clock.stem == SECONDS or numbers.size < _FEWEST_SAMPLES:
+        return numbers, told
+    step = float(np.median(np.diff(numbers)))
+    if step > _SLOWEST_S:
         allowed = Text("has steps of {step:g}: s, ms, us or ns? Name the unit, as in time (ms)", step=step)
         raise InputError(Fault(source, FIELD, clock.name, allowed))
     return numbers, told
-
-
-class _Wanted(NamedTuple):
-    """The column of time, the places of all of its parts, the six others, and the map that says so."""
-
-    clock: Column
-    clocks: list[int]
-    columns: list[ImuColumn]
-    increments: bool
-    column_map: ColumnMap | None
-
-    @property
-    def places(self) -> list[int]:
-        """Places of the six columns."""
-        return [column.index for column in self.columns]
-
-    @property
-    def decimal(self) -> str:
-        return "." if self.column_map is None else self.column_map.decimal
-
-
-def _numbers(
-    text: str, header: _Header, wanted: _Wanted, source: str
-) -> tuple[list[np.ndarray], np.ndarray, list[int]]:
-    """Columns of time, the six others, shape (n, 6), and the numbers of the rows that were skipped."""
-    begin = 0
-    for _ in range(header.line + 1):
-        begin = text.find("\n", begin) + 1 or len(text)
-    body = text[begin:]
-    if body.count("\n", 0, _HEAD_BYTES) <= 2 and len(body.strip().splitlines()) < 2:
-        raise InputError(Fault(source, FIELD, None, Text("holds fewer than two samples")))
-    if header.separator == " ":
-        body = "\n".join(" ".join(line.split()) for line in body.split("\n"))
-    skipped: list[int] = []
-    try:
-        table = _parsed(body, header, wanted, clock_text=False)
-    except ValueError:
-        first = header.line + 2
-        bad = _bad_rows(body, header, wanted)
-        if bad and (wanted.column_map is None or not wanted.column_map.skip_bad_rows):
-            what = Text(
-                "data line {bad} is no row of {columns} numbers: {lines}",
-                bad=bad[0] + first,
-                columns=len(header.names),
-                lines=body.split("\n")[bad[0]][:60],
-            )
-            raise InputError(Fault(source, FIELD, None, what)) from None
-        left_out = set(bad)
-        body = "\n".join(line for i, line in enumerate(body.split("\n")) if i not in left_out)
-        skipped = [number + first for number in bad]
-        table = _parsed(body, header, wanted, clock_text=True)
-    arrays = [np.asarray(column.to_numpy()) for column in table.columns]
-    clocks = len(wanted.clocks)
-    return arrays[:clocks], np.column_stack(arrays[clocks:]), skipped
-
-
-def _parsed(body: str, header: _Header, wanted: _Wanted, *, clock_text: bool) -> pyarrow.Table:
-    """Read by pyarrow; raises ValueError for a row that does not fit."""
-    import pyarrow
-    from pyarrow import csv
-
-    def rest(row: csv.InvalidRow) -> Literal["skip", "error"]:
-        return "skip" if row.text.lstrip().startswith(_COMMENTS) else "error"
-
-    number, text = pyarrow.float64(), pyarrow.string()
-    types = {str(index): number for index in wanted.places}
-    if clock_text or len(wanted.clocks) > 1:
-        types |= {str(index): text for index in wanted.clocks}
-    return csv.read_csv(
-        io.BytesIO(body.encode()),
-        read_options=csv.ReadOptions(
-            column_names=[str(i) for i in range(len(header.names))], use_threads=False
-        ),
-        parse_options=csv.ParseOptions(delimiter=header.separator, invalid_row_handler=rest),
-        convert_options=csv.ConvertOptions(
-            include_columns=[str(index) for index in (*wanted.clocks, *wanted.places)],
-            column_types=types,
-            null_values=["nan", "NaN", "NAN"],
-            timestamp_parsers=["\0"],
-            decimal_point=wanted.decimal,
-        ),
-    )
-
-
-def _bad_rows(body: str, header: _Header, wanted: _Wanted) -> list[int]:
-    """Numbers (from 0) of the lines that are no rows; only the first one where a row may not be skipped."""
-    skip = wanted.column_map is not None and wanted.column_map.skip_bad_rows
-    bad: list[int] = []
-    for number, line in enumerate(body.split("\n")):
-        if not line.strip() or line.lstrip().startswith(_COMMENTS):
-            continue
-        words = line.split(None if header.separator == " " else header.separator)
-        if len(words) == len(header.names) and all(
-            is_number(words[i].replace(wanted.decimal, ".")) for i in wanted.places
-        ):
-            continue
-        bad.append(number)
-        if not skip:
-            break
-    return bad

@@ -20,7 +20,7 @@ from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import unpacked
 from navcore.io.containers import is_container, open_container
 from navcore.io.even_stamps import Evenness, evenness
-from navcore.io.imu_table import ImuTable, is_imu_table, read_imu_container, read_imu_table
+from navcore.io.imu_table import ImuTable, is_imu_table, read_imu_container, read_imu_table, refuse_lost
 
 Axes = Literal[
     "rfu", "frd", "flu", "rbd", "rub", "rdf", "lfd", "lbu", "luf", "ldb", "fur", "fdl",
@@ -34,7 +34,7 @@ _LARGEST_FORCE_ERROR = 0.02
 _LARGEST_TILT = 30.0 * DEG
 _LARGEST_FILE = 128 * 1024 * 1024
 """Bytes: a day at 100 Hz."""
-_HEAD_BYTES = 8192
+_HEAD_BYTES = 1 << 16
 _UNEVEN = 0.1
 """Share of the sample interval by which stamps may be uneven without a word."""
 
@@ -108,14 +108,15 @@ def read_imu(
             held = open_container(file) if is_container(stream.read(_HEAD_BYTES), file) else None
         if held is not None:
             return _of_table(read_imu_container(held, str(path), column_map), str(path), axes)
-        text = unpacked(file, _LARGEST_FILE, "imu.file").decode("utf-8-sig").replace("\r\n", "\n")
+        content = unpacked(file, _LARGEST_FILE, "imu.file").removeprefix(b"\xef\xbb\xbf")
+        text = content[:_HEAD_BYTES].decode() if content.isascii() else content.decode()
     except (OSError, UnicodeDecodeError) as error:
         binary = isinstance(error, UnicodeDecodeError)
         reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
     if column_map is None and is_psins(text) and not is_imu_table(text):
-        return _psins(text, str(path))
-    return _of_table(read_imu_table(text, str(path), column_map), str(path), axes)
+        return _psins(content.decode(), str(path))
+    return _of_table(read_imu_table(content, str(path), column_map), str(path), axes)
 
 
 def is_psins(text: str) -> bool:
@@ -217,8 +218,10 @@ def _of_table(table: ImuTable, source: str, axes: Axes) -> ImuRecord:
                 rate=1.0 / interval,
             )
         )
-    values = turned(table.values * (1.0 if table.increments else interval), axes)
-    return ImuRecord(values, 1.0 / interval, source, warnings=tuple(told), kind=table.kind)
+    values = table.values
+    if not table.increments:
+        values *= interval
+    return ImuRecord(turned(values, axes), 1.0 / interval, source, warnings=tuple(told), kind=table.kind)
 
 
 def turned(values: np.ndarray, axes: Axes) -> np.ndarray:
@@ -249,12 +252,7 @@ def _numbers(
             lines=lines[bad][:60],
         )
         raise InputError(Fault(source, "imu.file", None, what)) from None
-    lost = np.flatnonzero(~np.isfinite(table).all(axis=1))
-    if lost.size:
-        what = Text(
-            "{size} samples are NaN or infinite, the first at sample {lost}", size=lost.size, lost=lost[0] + 1
-        )
-        raise InputError(Fault(source, "imu.file", None, what))
+    refuse_lost(source, table)
     return table
 
 

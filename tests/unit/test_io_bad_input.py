@@ -8,13 +8,16 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pyarrow
 import pytest
+from pyarrow import parquet
 
 from navcore.checks import map_guess
 from navcore.checks.file import check_log
 from navcore.checks.imu import check_mapped
 from navcore.foundation.errors import InputError
 from navcore.io.recording import read_recording
+from navcore.sensors.recorded_imu import read_imu
 
 LOG = "t_s,speed_mps\n" + "".join(f"{k},5.0\n" for k in range(200))
 SUMMER = "\n".join(["wann;stw", *(f"2024-03-31 0{k}:30:00;5" for k in range(1, 5))])
@@ -85,3 +88,30 @@ def test_fixes_that_lie_years_apart_take_no_time(tmp_path: Path) -> None:
     begin = time.process_time()
     check_log(tmp_path / "log.csv")
     assert time.process_time() - begin < 5.0
+
+
+def test_a_parquet_file_whose_account_is_damaged_is_refused(tmp_path: Path) -> None:
+    """Found by fuzzing: a letter of a column's name that is none, where the sizes of the columns stand."""
+    path = tmp_path / "log.parquet"
+    parquet.write_table(pyarrow.table({"unix_time": [1.7e9, 1.7e9 + 1.0], "speed_kn": [5.0, 5.0]}), path)
+    content = path.read_bytes()
+    at = content.rindex(b"speed_kn", 0, content.index(b"ARROW:schema"))
+    path.write_bytes(content[:at] + b"\x80" + content[at + 1 :])
+    with pytest.raises(InputError, match="cannot be read as a Parquet table"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(
+    ("cell", "wanted"),
+    [
+        ("-1e308", "1 samples are NaN or infinite, the first at sample 8"),
+        ("1_0", "data line 9 is no row of 7 numbers"),
+        ("59.2 N", "data line 9 is no row of 7 numbers"),
+    ],
+)
+def test_numbers_that_no_sensor_gives_are_refused(tmp_path: Path, cell: str, wanted: str) -> None:
+    """Found by fuzzing: a mean force of 1e308 m/s² has no size, and pyarrow reads less than Python does."""
+    rows = "".join(f"{0.01 * k},0,0,0,0,0,{cell if k == 7 else 9.8}\n" for k in range(20))
+    (tmp_path / "imu.csv").write_text("t_s,gx_rad_s,gy_rad_s,gz_rad_s,fx_mps2,fy_mps2,fz_mps2\n" + rows)
+    with pytest.raises(InputError, match=wanted):
+        read_imu(tmp_path / "imu.csv")
