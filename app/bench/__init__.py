@@ -15,7 +15,8 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     -------
     dict
         Keys of interface.md; ``error_model_24h_cold_ms``, ``run_24h_memory_mb``; ``budget_steady_7_ms``,
-        ``budget_24h_3_methods_ms`` (error budgets); of the full strapdown the law at the IMU's rate, the
+        ``budget_24h_3_methods_ms`` (error budgets); ``nmea_us_per_sentence``, ``imu_csv_ns_per_row``,
+        ``imu_parquet_ns_per_row`` (recordings read); of the full strapdown the law at the IMU's rate, the
         batch with the simulation of each run's IMU (``strapdown_seeds_ns_per_sample_run``), and a day
         (``strapdown_24h_100hz_s``, ``_mb``, with the Kalman filter ``_kalman_s``); the slider with the tab
         Design in front (``slider_design_ms_p50``, ``_p95``) and with every tab. With a yardstick
@@ -31,6 +32,7 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     """
     from schuler_bench.bench import runs
     from schuler_bench.bench.dashboard import measure_dashboard
+    from schuler_bench.bench.reading import measure_reading
     from schuler_bench.bench.strapdown import measure_strapdown
 
     numbers: dict[str, float] = {}
@@ -40,6 +42,7 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
         ("strapdown, a sample", measure_strapdown),
         ("strapdown, 24 h at 100 Hz", runs.measure_strapdown_day),
         ("error budget", runs.measure_budgets),
+        ("recordings", measure_reading),
         ("dashboard", measure_dashboard),
     ):
         tell(what)

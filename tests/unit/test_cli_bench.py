@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from schuler_bench.bench import reading
 from schuler_bench.bench.dashboard import DESIGN, slider_to_frame_ms
 from schuler_bench.bench.process import Server
 from schuler_bench.bench.rounds import median_ratio, timed_rounds
@@ -28,6 +29,9 @@ NUMBERS = {
     "strapdown_24h_100hz_s": 1.7,
     "strapdown_24h_100hz_mb": 230.0,
     "strapdown_24h_100hz_kalman_s": 4.0,
+    "nmea_us_per_sentence": 7.0,
+    "imu_csv_ns_per_row": 900.0,
+    "imu_parquet_ns_per_row": 150.0,
     "slider_to_frame_ms_p50": 55.0,
     "slider_to_frame_ms_p95": 69.0,
     "slider_design_ms_p50": 60.0,
@@ -51,6 +55,14 @@ def test_numbers_are_one_document_or_lines_with_units_and_goals(capsys, monkeypa
     (start,) = (line for line in lines if "process start to page served" in line)
     assert "0.9" in start and "<= 1.5" in start
     assert_told_in_words(NUMBERS)
+
+
+def test_recordings_are_read(monkeypatch):
+    monkeypatch.setattr(reading, "SECONDS", 20)
+    monkeypatch.setattr(reading, "SAMPLES", 200)
+    numbers = reading.measure_reading()
+    assert len(numbers) == 3 and all(value > 0.0 for value in numbers.values())
+    assert_told_in_words(numbers)
 
 
 def test_a_dashboard_that_does_not_answer_is_one_line(capsys, monkeypatch):
