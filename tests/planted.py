@@ -212,7 +212,7 @@ def _mat(folder: Path, track: Columns, log: Columns) -> list[Path]:
     return [folder / "track.mat", folder / "log.npz"]
 
 
-def _imu(folder: Path, columns: Columns) -> Path:
+def write_imu(folder: Path, columns: Columns) -> Path:
     names = {"t": "t_s", **{k: f"{k}_{'rad_s' if k[0] == 'g' else 'mps2'}" for k in (*_RATES, *_FORCES)}}
     return _csv(folder / "imu.csv", {name: columns[k] for k, name in names.items()})
 
@@ -280,7 +280,7 @@ def told(case: Case, folder: Path) -> list[str]:
         columns = rocking_imu()
         if case.fault is not None:
             columns[case.column] = case.fault.change(columns[case.column])
-        files = [_imu(folder, columns)]
+        files = [write_imu(folder, columns)]
     else:
         parts = dict(zip(("track", "log"), ship(), strict=True))
         if case.fault is not None:
