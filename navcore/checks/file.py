@@ -12,7 +12,7 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
-from navcore.io.agreement import agreement_warnings
+from navcore.io.agreement import agreement_warnings, clock_text
 from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import head_of
 from navcore.io.courses import course_warnings
@@ -252,7 +252,8 @@ def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]
         )
         words.append(f"  {_NAMES[name]} ({entry['source']}): {samples}")
         words += [f"    {_extent(key, entry[key])}" for key in entry if key.endswith(("_deg", "_kn", "_mps"))]
-    return words
+    clock = clock_text(recording)
+    return [*words, Text("  {clock}", clock=clock)] if clock else words
 
 
 def _extent(key: str, extent: list[float]) -> str:

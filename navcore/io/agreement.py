@@ -1,7 +1,8 @@
 """Whether a speed log and a heading agree with the motion over ground: scale, sign, and clocks that lag.
 
 A log's scale cannot be told from a current while the ship keeps its course. When it turns, the current keeps
-its direction: scale and current come from least squares together.
+its direction: scale and current come from least squares together. Without a heading a log's clock is told by
+the changes of its speed, and nothing else of it.
 """
 
 from collections.abc import Callable, Iterable
@@ -13,7 +14,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.io.courses import SPEED_SLIPS, Way, under_way
 from navcore.io.plausible import slip_of
-from navcore.io.series import Recording
+from navcore.io.series import Recording, Series
 
 LARGEST_SCALE_ERROR = 0.07
 """Of a log whose scale is known well; units differ by 10 % and more."""
@@ -68,11 +69,15 @@ def findings(recording: Recording) -> list[Finding]:
     Parameters
     ----------
     recording : Recording
-        With heading and positions or velocity under way, of one file or joined of several.
+        With positions or velocity under way, and heading or speed through the water, of one file or joined of
+        several.
     """
     way = under_way(recording)
-    if recording.heading is None or way is None or way.time_s.size < _FEWEST:
+    if way is None or way.time_s.size < _FEWEST:
         return []
+    if recording.heading is None:
+        speeds = _of_speeds(recording.water, way)
+        return [] if speeds is None else _lagging("water", _WORDS[0], speeds[0], _LEAST_SPEED_MPS, speeds[1])
     heading_s, heading = recording.heading.time_s, np.unwrap(recording.heading.values[:, 0])
     course = np.unwrap(np.arctan2(way.east, way.north))
     found = _lagging(
@@ -83,6 +88,60 @@ def findings(recording: Recording) -> list[Finding]:
         min(heading_s[-1], way.time_s[-1]) - max(heading_s[0], way.time_s[0]),
     )
     return found or _of_log(recording, way, heading_s, heading)
+
+
+def clock_text(recording: Recording) -> str:
+    """Time by which a log without a heading is late by the changes of its speed, or why it cannot be told."""
+    way = under_way(recording)
+    speeds = None if way is None or recording.heading is not None else _of_speeds(recording.water, way)
+    if speeds is None:
+        return ""
+    misfit, span_s = speeds
+    if not misfit(np.inf) > _LEAST_SPEED_MPS:
+        return Text(
+            "the log's clock cannot be told without a heading: the speed over ground changes by {change:.2f} "
+            "m/s (rms), at least {least} are needed",
+            change=misfit(np.inf),
+            least=_LEAST_SPEED_MPS,
+        )
+    lag_s, reach_s, left = _shift(misfit, misfit(np.inf), span_s)
+    if left > _BETTER * misfit(np.inf):
+        return Text(
+            "the log's clock cannot be told without a heading: its speed and that over ground do not change "
+            "together"
+        )
+    return Text(
+        "the log is {lag:+.0f} s (± {reach:.0f} s) late by the changes of its speed", lag=lag_s, reach=reach_s
+    )
+
+
+def _of_speeds(water: Series | None, way: Way) -> tuple[Callable[[float], float], float] | None:
+    """What the speed through the water leaves of the changes over ground, m/s, by the time it is late.
+
+    And the time that both share, s. Each shift leaves its share of what changes while both are there, so that
+    a steady part does not fit by itself. A log that is infinitely late says nothing: all changes are left.
+    """
+    kept = np.flatnonzero(water.valid) if water is not None else np.array([], dtype=int)
+    if water is None or kept.size < _FEWEST or way.time_s.size < _FEWEST:
+        return None
+    time_s, speed = water.time_s[kept], np.hypot(*water.values[kept].T)
+    ground = np.hypot(way.east, way.north)
+    changes = float(np.std(ground))
+
+    def misfit(lag_s: float) -> float:
+        if np.isinf(lag_s):
+            return changes
+        inside = np.flatnonzero((time_s - lag_s >= way.time_s[0]) & (time_s - lag_s <= way.time_s[-1]))
+        inside = inside[:: max(1, inside.size // _MOST)]
+        if inside.size < _FEWEST:
+            return np.inf
+        over = np.interp(time_s[inside] - lag_s, way.time_s, ground)
+        own = speed[inside] - speed[inside].mean()
+        sizes = np.linalg.norm(own) * np.linalg.norm(over - over.mean())
+        alike = max(float(own @ over / sizes), 0.0) if sizes > 0.0 else 0.0
+        return changes * np.sqrt(max(1.0 - alike**2, 0.0))
+
+    return misfit, float(min(time_s[-1], way.time_s[-1]) - max(time_s[0], way.time_s[0]))
 
 
 def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.ndarray) -> list[Finding]:
@@ -163,23 +222,33 @@ def _lagging(
     now = misfit(0.0)
     if not least < now < np.inf:
         return []
-    reach = min(_WIDEST_LAG_S, _SHARE * span_s)
-    step = max(2.0, reach / 100.0)
-    lags = step * np.arange(-int(reach / step), int(reach / step) + 1)
-    sizes = np.array([misfit(float(lag)) for lag in lags])
-    best = int(np.argmin(sizes))
-    if abs(lags[best]) < SHORTEST_LAG_S or sizes[best] > _BETTER * now:
+    lag_s, reach_s, left = _shift(misfit, now, span_s)
+    if abs(lag_s) < SHORTEST_LAG_S or left > _BETTER * now:
         return []
-    late_s = _refined(misfit, float(lags[best]), step)
-    near = lags[sizes <= sizes[best] + 0.1 * (now - sizes[best])]
+    late_s = _refined(misfit, lag_s, _step(span_s))
     told = Text(
         "{what} is {lag:+.0f} s (± {reach:.0f} s) late against the motion over ground: clocks of two "
         "loggers? Shift its times",
         what=what,
         lag=late_s,
-        reach=0.5 * float(np.ptp(near)) + step,
+        reach=reach_s,
     )
     return [Finding(told, stream, late_s=late_s)]
+
+
+def _step(span_s: float) -> float:
+    return max(2.0, min(_WIDEST_LAG_S, _SHARE * span_s) / 100.0)
+
+
+def _shift(misfit: Callable[[float], float], now: float, span_s: float) -> tuple[float, float, float]:
+    """Time on a grid that fits best, by how much it is unsure, and what it leaves."""
+    step = _step(span_s)
+    count = int(min(_WIDEST_LAG_S, _SHARE * span_s) / step)
+    lags = step * np.arange(-count, count + 1)
+    sizes = np.array([misfit(float(lag)) for lag in lags])
+    best = int(np.argmin(sizes))
+    near = lags[sizes <= sizes[best] + 0.1 * (now - sizes[best])]
+    return float(lags[best]), 0.5 * float(np.ptp(near)) + step, float(sizes[best])
 
 
 def _refined(misfit: Callable[[float], float], lag_s: float, step_s: float) -> float:
