@@ -8,20 +8,23 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 
+from navcore.engine.drivers.common import law_of, network_of, requirement_spans, seen_by
 from navcore.engine.drivers.kalman import Gains
 from navcore.engine.drivers.linear import carried_out
 from navcore.engine.environment import Environment, environment
 from navcore.engine.run import Span, spans
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG_PER_HOUR, MICRO_G
+from navcore.mechanization.error_batch import WIDTH, ErrorModelBatch, one_behind_the_other
 from navcore.mechanization.recorder import FINAL, POSITION
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import stochastic_model
+from navcore.sensors.base import SensorErrors
 
 SEARCHED = 1_000_000
 """Added to the seed of a run by what a search draws, so that it never meets what judges it."""
@@ -118,55 +121,65 @@ def outcomes(
     def one(number: int) -> list[tuple[Outcome, ...]]:
         if report(0.0):
             return []
-        outcome = tuple(_strapdown(bare, number) if bare.strapdown else _linear(bare, number, gains))
+        outcome = tuple(_strapdown(bare, number))
         report(1.0)
         return [outcome]
 
+    def block(some: Sequence[int]) -> list[tuple[Outcome, ...]]:
+        return batch_outcomes([drawn(bare, number) for number in some], report, bare, gains)
+
     with ThreadPoolExecutor(_WORKERS) as pool:
-        if batchable(bare):
-            for some in pool.map(partial(_batch, bare, report), _blocks(numbers)):
-                done += some
-            return done
         # the first seed alone: it computes the gains of a filter that the others share
-        for number in numbers[:1]:
-            done += one(number)
+        first = len(gains) and not bare.strapdown
+        for number in numbers[:first]:
+            done += block([number])
         for k in [*gains]:
             if not done or not done[0][k].ended:
                 del gains[k]
-        for some in pool.map(one, numbers[1:]):
+        width = width_of(bare)
+        parts = [numbers[i : i + width] for i in range(first, len(numbers), width)] if width else ()
+        for some in pool.map(block, parts) if width else pool.map(one, numbers):
             done += some
     return done
 
 
-def batchable(scenario: Scenario) -> bool:
-    """Whether strapdown runs of several seeds can go side by side (`navcore.engine.drivers.batch`)."""
-    simulated = scenario.strapdown and scenario.imu.file is None
+def width_of(scenario: Scenario) -> int:
+    """Runs of other seeds that go side by side; 0 of a strapdown that `run_batches` cannot carry out."""
+    if not scenario.strapdown:
+        return WIDTH
+    from navcore.mechanization.strapdown.batch import WIDTH as STRAPDOWN_WIDTH
+
     laws = all(method.kind.carrying == "law" for method in scenario.method)
-    return simulated and laws and scenario.run.vertical == "locked"
-
-
-def _blocks(numbers: Sequence[int]) -> list[Sequence[int]]:
-    from navcore.mechanization.strapdown.batch import WIDTH
-
-    return [numbers[i : i + WIDTH] for i in range(0, len(numbers), WIDTH)]
-
-
-def _batch(
-    scenario: Scenario, report: Callable[[float], bool], numbers: Sequence[int]
-) -> list[tuple[Outcome, ...]]:
-    return batch_outcomes([drawn(scenario, number) for number in numbers], report)
+    able = scenario.imu.file is None and laws and scenario.run.vertical == "locked"
+    return STRAPDOWN_WIDTH if able else 0
 
 
 def batch_outcomes(
-    scenarios: Sequence[Scenario], report: Callable[[float], bool]
+    scenarios: Sequence[Scenario],
+    report: Callable[[float], bool],
+    told: Scenario | None = None,
+    gains: Mapping[int, Gains] = MappingProxyType({}),
 ) -> list[tuple[Outcome, ...]]:
-    """Run scenarios side by side that differ in seeds and constants; as `run_batches`.
+    """Run scenarios side by side that differ in seeds and constants.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        At most `width_of` them.
+    report : callable
+        Given the scenarios done since the last call, a part of one counting as such; returns whether to stop.
+    told : Scenario, optional
+        What a Kalman filter knows of: the standard deviations, not the constants; else each scenario itself.
+    gains : mapping of int to Gains, optional
+        Of the Kalman filters of the error model, by the method's place.
 
     Returns
     -------
     list of tuple of Outcome
         For each scenario one a method; empty when it was stopped.
     """
+    if not scenarios[0].strapdown:
+        return _linear(scenarios, report, told, gains)
     from navcore.engine.drivers.batch import run_batches
 
     batches = run_batches(scenarios, report)
@@ -177,10 +190,51 @@ def batch_outcomes(
     ]
 
 
-def _linear(scenario: Scenario, number: int, gains: Mapping[int, Gains]) -> Iterator[Outcome]:
-    env, state = _inputs(drawn(scenario, number))
-    for k, method in enumerate(scenario.method):
-        yield _outcome(scenario, method, env, state, gains.get(k))
+def _linear(
+    scenarios: Sequence[Scenario],
+    report: Callable[[float], bool],
+    told: Scenario | None,
+    gains: Mapping[int, Gains],
+) -> list[tuple[Outcome, ...]]:
+    if report(0.0):
+        return []
+    inputs, each = [_inputs(one) for one in scenarios], scenarios[0].method
+    sensors = one_behind_the_other([env.sensors for env, _ in inputs])
+    columns: list[list[Outcome]] = []
+    for k, method in enumerate(each):
+        if method.kind.carrying == "law" and len(scenarios) > 1:
+            columns.append(_side_by_side(scenarios[0], method, inputs, sensors))
+        else:
+            pairs = zip(scenarios, inputs, strict=True)
+            columns.append([_outcome(told or one, method, *given, gains.get(k)) for one, given in pairs])
+        if report(len(scenarios) / len(each)):
+            return []
+    return [*zip(*columns, strict=True)]
+
+
+def _side_by_side(
+    scenario: Scenario,
+    method: Method,
+    inputs: Sequence[tuple[Environment, np.ndarray]],
+    sensors: SensorErrors,
+) -> list[Outcome]:
+    step_s, env = scenario.run.step_s, inputs[0][0]
+    law = law_of(method, network_of(scenario, method), step_s)
+    batch = ErrorModelBatch(
+        step_s,
+        env.steps,
+        env.coefficients,
+        sensors,
+        [seen_by(method, env.reference) for env, _ in inputs],
+        [law] * len(inputs),
+        [state for _, state in inputs],
+        requirement_spans(scenario, step_s),
+    )
+    batch.advance(env.steps + 1)
+    lanes = zip(batch.diverged, batch.spans, batch.position_m.tolist(), strict=True)
+    return [
+        Outcome(not lost and math.isfinite(final), spans(own, step_s), final) for lost, own, final in lanes
+    ]
 
 
 def linear_outcomes(scenario: Scenario, known: Mapping[Method, Outcome]) -> tuple[Outcome, ...]:

@@ -4,7 +4,7 @@ numba reads ``p.law_step`` of a record as one load at a known offset. A record i
 kernel changes the record that Python holds. A field may be a small array or a record of its own.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -59,3 +59,11 @@ def fill_record(record: np.void, values: Mapping[str, Any]) -> None:
             fill_record(record[name], value)
         else:
             record[name] = value
+
+
+def stacked(records: Sequence[np.void], kind: np.dtype) -> np.ndarray:
+    """Copy records of one kind into an array, shape (n,)."""
+    out = np.zeros(len(records), kind)
+    for i, each in enumerate(records):
+        out[i] = each
+    return out

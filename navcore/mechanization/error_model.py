@@ -152,6 +152,15 @@ def in_range(x):
 
 
 @inlined
+def correction(law, sensed, begin, x):
+    """Return the `Correction` of the level channels, and c_U (rad/s); with a step's first coefficients."""
+    c, c_u = law_step(law, sensed), 0.0
+    if law.p.azimuth_order > 0:
+        c, c_u = steer(law, c, _up_rate(begin, x))
+    return c, c_u
+
+
+@inlined
 def _up_rate(c, x):
     """Computed rate about the vertical with the `Errors` x, at the coefficients of a step's begin."""
     by_lat, by_v_e = c.earth_n + c.up_lat, c.tan_lat * c.inv_n
@@ -177,11 +186,10 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
         motion = law_input[k * law_stride]
         read_log(t, x, motion.v_e, motion.v_n, log, s)
         # the heading that the ship has is the computed one: level, it is off by phi_U (theory.md 2.3)
-        c = law_step(law, Sensed(motion.v_e + x.dv_e, motion.v_n + x.dv_n, motion.heading + x.phi_u))
         begin = half[2 * k * half_stride]
-        c_u = 0.0
-        if law.p.azimuth_order > 0:
-            c, c_u = steer(law, c, _up_rate(begin, x))
+        c, c_u = correction(
+            law, Sensed(motion.v_e + x.dv_e, motion.v_n + x.dv_n, motion.heading + x.phi_u), begin, x
+        )
         watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
         record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)
         if (k + 1) % recorder.bin_width == 0 or k + 1 == last:

@@ -158,6 +158,24 @@ def record(k, x, m, n_cos, watched, recorder):
 
 
 @inlined
+def take_lengths(k, errors, position, spans):
+    """Take the lengths of the error vectors of step k into the spans of a run; the position error in m."""
+    squares = (
+        errors.phi_e * errors.phi_e + errors.phi_n * errors.phi_n,
+        errors.dv_e * errors.dv_e + errors.dv_n * errors.dv_n,
+        errors.phi_u * errors.phi_u,
+        position * position,
+    )
+    for w in range(spans.shape[0]):
+        span = spans[w]
+        if k >= span.first:
+            span.count += 1
+            for v in range(4):
+                span.sums[v] += squares[v]
+                span.largest[v] = max(span.largest[v], squares[v])
+
+
+@inlined
 def flush(recorder):
     """Empty the buffer into the statistics and the bin of its steps, the present one.
 

@@ -23,6 +23,7 @@ from navcore.sensors.true_state import (
     horizontal_state,
     to_navigation,
     to_ship,
+    turned,
 )
 
 SHORTEST_HOLD_S = 5.0
@@ -146,7 +147,7 @@ def mean_rounding_of(
     for seed in range(paths):
         own, _ = still.own(time_s.size, interval, seed, 1.0)
         error = mean_rounding(readings.along_axes + own, log.lsb, sigma) / math.sqrt(paths)
-        error = to_navigation(error, readings.heading) if log.body_frame else error
+        error = turned(error, *readings.turn) if log.body_frame else error
         errors.append(np.broadcast_to(error, (time_s.size, 2)))
     return time_s, errors
 
@@ -231,7 +232,7 @@ class _Log:
     def rounded_errors(self, readings: "_Readings", own: np.ndarray, lsb: float) -> np.ndarray:
         """Errors of readings that are rounded in the log's axes; a body log's are turned by the heading."""
         read = _rounded(readings.along_axes + own, lsb)
-        return (to_navigation(read, readings.heading) if self.body_frame else read) - readings.velocity
+        return (turned(read, *readings.turn) if self.body_frame else read) - readings.velocity
 
     def readings(self, truth: Truth, time_s: np.ndarray) -> "_Readings":
         """Readings of an earlier velocity, smoothed, to which any seed adds the log's own errors."""
@@ -241,14 +242,18 @@ class _Log:
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_motion(truth, measured_at)
         along_axes = to_ship(seen, then_heading) if self.body_frame else seen
-        return _Readings(_smoothed(along_axes, time_s, self.smoothing_s), heading, velocity)
+        turn = np.sin(heading), np.cos(heading)
+        return _Readings(_smoothed(along_axes, time_s, self.smoothing_s), turn, velocity)
 
 
 class _Readings(NamedTuple):
-    """Readings without the log's own errors, in its axes (m/s); present heading (rad) and velocity (m/s)."""
+    """Readings without the log's own errors, in its axes, and the present velocity, m/s.
+
+    ``turn``: sine and cosine of the present heading.
+    """
 
     along_axes: np.ndarray
-    heading: np.ndarray
+    turn: tuple[np.ndarray, np.ndarray]
     velocity: np.ndarray
 
 

@@ -106,7 +106,11 @@ def _hermite(
 
 def to_navigation(starboard_forward: np.ndarray, heading: np.ndarray) -> np.ndarray:
     """Turn speeds along the ship's axes to E, N by a heading (rad), level ship; shape (m, 2)."""
-    sine, cosine = np.sin(heading), np.cos(heading)
+    return turned(starboard_forward, np.sin(heading), np.cos(heading))
+
+
+def turned(starboard_forward: np.ndarray, sine: np.ndarray, cosine: np.ndarray) -> np.ndarray:
+    """Turn as `to_navigation`, by the sine and cosine of a heading."""
     starboard, forward = starboard_forward[:, 0], starboard_forward[:, 1]
     return np.column_stack([starboard * cosine + forward * sine, forward * cosine - starboard * sine])
 

@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 
 from navcore.engine.drivers.linear import all_but_methods
-from navcore.engine.ensemble import Outcome, batch_outcomes, batchable, linear_outcomes
+from navcore.engine.ensemble import Outcome, batch_outcomes, linear_outcomes, width_of
 from navcore.engine.measures import begins_s, measure, run_value
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import HOUR
-from navcore.mechanization.strapdown.batch import WIDTH
 from navcore.quantities import NAMES, QUANTITIES, limit_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -63,8 +62,10 @@ def run_points(plan: Plan, numbers: Iterable[int], stopped: Stopped) -> Iterator
         except InputError as error:
             yield from ((number, _refused(plan, number, error)) for number in members)
             continue
-        if batchable(scenario) and not single.whole:
-            yield from _batches(plan, scenario, members, stopped)
+        width = 0 if single.whole else width_of(scenario)
+        # one run of the error model alone may know methods of the run before
+        if width and (scenario.strapdown or len(members) > 1):
+            yield from _batches(plan, scenario, members, width, stopped)
         else:
             for number in members:
                 try:
@@ -109,10 +110,10 @@ class _Single:
 
 
 def _batches(
-    plan: Plan, scenario: Scenario, numbers: Sequence[int], stopped: Stopped
+    plan: Plan, scenario: Scenario, numbers: Sequence[int], width: int, stopped: Stopped
 ) -> Iterator[tuple[int, list[Row]]]:
-    for first in range(0, len(numbers), WIDTH):
-        some = numbers[first : first + WIDTH]
+    for first in range(0, len(numbers), width):
+        some = numbers[first : first + width]
         seeded = [plan.seeded(scenario, plan.at(number)[1]) for number in some]
         try:
             found = batch_outcomes(seeded, lambda _: stopped())

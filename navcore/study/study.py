@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from navcore.engine.drivers.common import Cancelled, Progress
+from navcore.mechanization.error_batch import WIDTH
 from navcore.study.plan import Plan
 from navcore.study.results import Folder
 from navcore.study.running import Engine, Row, run_points
@@ -16,7 +17,7 @@ from navcore.study.summary import summary
 
 _PART_S = 0.3
 """Time after which the rows that a worker has are kept."""
-_BLOCK_S = 4.0
+_BLOCK_S = 2.0
 """Work of a block, which one worker does: long enough that neighbours share, short enough for an even end."""
 _LARGEST_BLOCK = 4096
 
@@ -107,6 +108,7 @@ def carry_out(
 
 def _blocks(plan: Plan, missing: list[tuple[int, int]], left: int, workers: int) -> Iterator[range]:
     size = int(min(_BLOCK_S * plan.runs / plan.seconds(), left / (4 * workers), _LARGEST_BLOCK)) + 1
+    size = max(size - size % WIDTH, min(size, WIDTH))  # runs of other seeds go side by side
     for begin, end in missing:
         for first in range(begin, end, size):
             yield range(first, min(first + size, end))

@@ -13,8 +13,9 @@ import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
+from navcore.foundation.records import stacked
 from navcore.law.law import LAW_PARAMETERS, LAW_STATE, Law
-from navcore.mechanization.recorder import given_out
+from navcore.mechanization.recorder import given_out, take_lengths
 from navcore.mechanization.strapdown.kernel import arms, azimuth_epoch, errors_at, law_epoch, navigates
 from navcore.mechanization.strapdown.log import VelocityReference
 from navcore.mechanization.strapdown.records import CONSTANTS, LARGEST_LATITUDE, LAST_CALL, constants_of
@@ -132,20 +133,9 @@ def _record(row, run, errors, truth, i, runs):
     """Take the errors of one run at record ``row``, row i of the truth, into its spans."""
     m, n_cos = arms(runs.con[run], truth, i)
     north, east = m * errors.d_lat, n_cos * errors.d_lon
-    squares = (
-        errors.phi_e * errors.phi_e + errors.phi_n * errors.phi_n,
-        errors.dv_e * errors.dv_e + errors.dv_n * errors.dv_n,
-        errors.phi_u * errors.phi_u,
-        north * north + east * east,
-    )
-    runs.position_m[run] = math.sqrt(squares[3])
-    for w in range(runs.spans.shape[1]):
-        span = runs.spans[run, w]
-        if row >= span.first:
-            span.count += 1
-            for v in range(4):
-                span.sums[v] += squares[v]
-                span.largest[v] = max(span.largest[v], squares[v])
+    position = math.sqrt(north * north + east * east)
+    runs.position_m[run] = position
+    take_lengths(row, errors, position, runs.spans[run])
 
 
 @kernel
@@ -274,10 +264,10 @@ class BatchRun:
         self.spans = np.tile(spans, (runs, 1))
         self.position_m, self.diverged = np.zeros(runs), np.zeros(runs, bool)
         self._own = _Runs(
-            con=_stacked([constants(start, settings, earth) for start in starts], CONSTANTS),
+            con=stacked([constants(start, settings, earth) for start in starts], CONSTANTS),
             last=np.zeros(runs, LAST_CALL),
-            p=_stacked([law.p for law in laws], LAW_PARAMETERS),
-            s=_stacked([law.s for law in laws], LAW_STATE),
+            p=stacked([law.p for law in laws], LAW_PARAMETERS),
+            s=stacked([law.s for law in laws], LAW_STATE),
             ring=np.stack([law.ring for law in laws]),
             log=VelocityReference(
                 np.stack([log.time_s for log in logs]),
@@ -315,10 +305,3 @@ class BatchRun:
         pace = _Pace(set_.samples, set_.law_every, set_.record_every)
         _advance_block(increments.reshape(-1), samples, self.position, pace, self._x, self._own)
         self.position += samples
-
-
-def _stacked(records: Sequence[np.void], kind: np.dtype) -> np.ndarray:
-    out = np.zeros(len(records), kind)
-    for i, each in enumerate(records):
-        out[i] = each
-    return out

@@ -1,0 +1,233 @@
+"""Many runs of the error model at once: the same motion and method, each run with its own errors and start.
+
+Runs are the inner, vectorised dimension, as in `navcore.mechanization.strapdown.batch`; every number comes
+out as in the single run, bit for bit. A batch keeps what an ensemble judges: spans and the last position.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.records import stacked
+from navcore.law.law import LAW_PARAMETERS, LAW_STATE, Law
+from navcore.law.records import Sensed
+from navcore.mechanization.error_model import (
+    Held,
+    LogErrors,
+    correction,
+    in_range,
+    read_log,
+    runge_kutta,
+)
+from navcore.mechanization.recorder import Errors, given_out, take_lengths
+from navcore.mechanization.trajectory import Coefficients
+from navcore.sensors.base import ReferenceErrors, SensorErrors
+
+WIDTH = 8
+"""Runs of a block."""
+_W = WIDTH
+# Rows of a block's flat state: the errors, then what is held over a step.
+_HELD, _ROWS = 7, 17
+
+
+class _Half(NamedTuple):
+    """Numbers of `navcore.mechanization.trajectory.HALF_STEP` that a rate needs.
+
+    As scalars, so that LLVM knows that no store into the block's state changes them.
+    """
+
+    w_e: float
+    w_n: float
+    w_u: float
+    f_e: float
+    f_n: float
+    f_u: float
+    inv_m: float
+    inv_n: float
+    tan_lat: float
+    earth_n: float
+    earth_u: float
+    v_e: float
+    v_n: float
+    v_u: float
+    up_lat: float
+    sec_lat: float
+
+
+class _Runs(NamedTuple):
+    """Records of each run, their errors one behind the other, and what they share."""
+
+    p: np.ndarray  # of the laws
+    s: np.ndarray
+    ring: np.ndarray
+    gyro: np.ndarray  # (runs, n, 3)
+    accel: np.ndarray
+    log: LogErrors
+    spans: np.ndarray  # `SPAN`, shape (runs, spans)
+    position_m: np.ndarray
+    diverged: np.ndarray
+
+
+@inlined
+def _half(c):
+    return _Half(
+        c.w_e, c.w_n, c.w_u, c.f_e, c.f_n, c.f_u, c.inv_m, c.inv_n, c.tan_lat, c.earth_n, c.earth_u,
+        c.v_e, c.v_n, c.v_u, c.up_lat, c.sec_lat,
+    )  # fmt: skip
+
+
+@inlined
+def _errors_of(x, j):
+    return Errors(x[j], x[_W + j], x[2 * _W + j], x[3 * _W + j], x[4 * _W + j], x[5 * _W + j], x[6 * _W + j])
+
+
+@inlined
+def _keep_errors(x, j, errors):
+    x[j], x[_W + j], x[2 * _W + j], x[3 * _W + j] = errors.dv_e, errors.dv_n, errors.d_lat, errors.d_lon
+    x[4 * _W + j], x[5 * _W + j], x[6 * _W + j] = errors.phi_e, errors.phi_n, errors.phi_u
+
+
+@inlined
+def _held_of(x, j):
+    return Held(
+        x[7 * _W + j], x[8 * _W + j], x[9 * _W + j], x[10 * _W + j], x[11 * _W + j],
+        x[12 * _W + j], x[13 * _W + j], x[14 * _W + j], x[15 * _W + j], x[16 * _W + j],
+    )  # fmt: skip
+
+
+@inlined
+def _epoch(k, t, run, motion, begin, x, runs):
+    """Log, law and record of one run, lane of the same number, at step k; what is held until the next."""
+    errors = _errors_of(x, run)
+    if not in_range(errors):
+        runs.diverged[run] = True
+        for row in range(_ROWS):
+            x[row * _W + run] = 0.0
+    if runs.diverged[run]:
+        return
+    logs, law = runs.log, Law(runs.p[run], runs.s[run], runs.ring[run])
+    log = LogErrors(logs.time_s[run], logs.error[run], logs.valid[run], logs.body_frame, logs.hold_s)
+    read_log(t, errors, motion.v_e, motion.v_n, log, law.s)
+    sensed = Sensed(motion.v_e + errors.dv_e, motion.v_n + errors.dv_n, motion.heading + errors.phi_u)
+    c, c_u = correction(law, sensed, begin, errors)
+    north, east = begin.m * errors.d_lat, begin.n_cos * errors.d_lon
+    position = math.sqrt(north * north + east * east)
+    runs.position_m[run] = position
+    take_lengths(k, given_out(errors, law.s), position, runs.spans[run])
+    g = k if runs.gyro.shape[1] > 1 else 0
+    a = k if runs.accel.shape[1] > 1 else 0
+    if g < runs.gyro.shape[1] and a < runs.accel.shape[1]:  # there are none at the end
+        for axis in range(3):
+            x[(7 + axis) * _W + run] = runs.gyro[run, g, axis]
+        x[10 * _W + run], x[11 * _W + run] = runs.accel[run, a, 0], runs.accel[run, a, 1]
+    x[12 * _W + run], x[13 * _W + run], x[14 * _W + run], x[15 * _W + run] = c
+    x[16 * _W + run] = c_u
+
+
+@kernel
+def _advance_block(first, last, final, h, half, law_input, x, runs):
+    """Integrate steps first..last of 0..final for all runs of a block."""
+    half_stride = 1 if half.shape[0] > 1 else 0
+    law_stride = 1 if law_input.shape[0] > 1 else 0
+    for k in range(first, last):
+        record = half[2 * k * half_stride]
+        for run in range(runs.p.shape[0]):
+            _epoch(k, k * h, run, law_input[k * law_stride], record, x, runs)
+        if k == final:
+            return
+        begin = _half(record)
+        middle, end = _half(half[(2 * k + 1) * half_stride]), _half(half[(2 * k + 2) * half_stride])
+        for j in range(_W):
+            _keep_errors(x, j, runge_kutta(_errors_of(x, j), h, begin, middle, end, _held_of(x, j)))
+
+
+def one_behind_the_other(sensors: Sequence[SensorErrors]) -> SensorErrors:
+    """Put the sensor errors of several runs, with as many rows each, into arrays of shape (runs, n, 3)."""
+    return SensorErrors(np.stack([each.gyro for each in sensors]), np.stack([each.accel for each in sensors]))
+
+
+class ErrorModelBatch:
+    """Up to `WIDTH` runs of one method under way.
+
+    Parameters
+    ----------
+    step_s : float
+        Integration step, s.
+    steps : int
+        Number of steps; states exist at 0..steps.
+    coefficients : Coefficients
+        Along the motion that all share.
+    sensors : SensorErrors
+        Of all runs one behind the other, shapes (runs, n, 3): `one_behind_the_other`.
+    references : sequence of ReferenceErrors
+        One a run, with as many epochs each.
+    laws : sequence of Law
+        One a run, of one method.
+    starts : sequence of ndarray, shape (7,)
+        Errors at t = 0, SI.
+    spans : ndarray of `navcore.mechanization.recorder.SPAN`
+        Empty.
+
+    Attributes
+    ----------
+    spans : ndarray of `SPAN`, shape (runs, spans)
+        Lengths of each run's error vectors, as of the single run's recorder.
+    position_m : ndarray, shape (runs,)
+        Last position error, m.
+    diverged : ndarray of bool, shape (runs,)
+        Runs that left the range of the linear model.
+
+    Raises
+    ------
+    ValueError
+        There are too many runs.
+    """
+
+    def __init__(
+        self,
+        step_s: float,
+        steps: int,
+        coefficients: Coefficients,
+        sensors: SensorErrors,
+        references: Sequence[ReferenceErrors],
+        laws: Sequence[Law],
+        starts: Sequence[np.ndarray],
+        spans: np.ndarray,
+    ) -> None:
+        if (runs := len(starts)) > WIDTH:
+            raise ValueError(f"a batch has at most {WIDTH} runs, not {runs}")
+        self._step_s, self._steps, self._position = step_s, steps, 0
+        self._coefficients = coefficients
+        self.spans = np.tile(spans[spans["first"] <= steps], (runs, 1))
+        self.position_m, self.diverged = np.zeros(runs), np.zeros(runs, bool)
+        self._runs = _Runs(
+            p=stacked([law.p for law in laws], LAW_PARAMETERS),
+            s=stacked([law.s for law in laws], LAW_STATE),
+            ring=np.stack([law.ring for law in laws]),
+            gyro=sensors.gyro,
+            accel=sensors.accel,
+            log=LogErrors(
+                np.stack([log.time_s for log in references]),
+                np.stack([log.error for log in references]),
+                np.stack([log.valid for log in references]),
+                references[0].body_frame,
+                float(references[0].hold_s),
+            ),
+            spans=self.spans,
+            position_m=self.position_m,
+            diverged=self.diverged,
+        )
+        x = np.zeros((_ROWS, WIDTH))
+        x[:_HELD, :runs] = np.transpose(starts)
+        self._x = x.reshape(-1)
+
+    def advance(self, steps: int) -> bool:
+        """Integrate up to ``steps`` further steps; return True when the runs are complete."""
+        last = min(self._position + steps, self._steps + 1)
+        c = self._coefficients
+        _advance_block(self._position, last, self._steps, self._step_s, c.half, c.law, self._x, self._runs)
+        self._position = last
+        return last > self._steps
