@@ -17,6 +17,7 @@ from schuler_bench.cli.design_text import budget_text
 from schuler_bench.cli.run_text import run_text
 from schuler_bench.plots.plotly_data import Packed, PlotlyFigure
 from schuler_bench.plots.saved import time_figure
+from schuler_bench.session.display import Display
 from schuler_bench.views.design.figure import budget_figure
 from schuler_bench.views.errors.figure import GROUPS, error_plots
 from schuler_bench.views.frequency.figure import bode, nyquist
@@ -55,7 +56,7 @@ OF_RUN: dict[str, Maker] = {
 
 def run_figure(run: Run, name: str, **options: Any) -> Figure:
     """Make a figure of a run; see `Run.figure`."""
-    return _figure_of(OF_RUN, name, run, options)
+    return _figure_of(OF_RUN, name, Display().placed(run), options)
 
 
 def network_figure(network: NetworkParameters, name: str, lat_deg: float, **options: Any) -> Figure:

@@ -1,6 +1,6 @@
 """Pinned runs beside the present one: laid over its figures, and subtracted in the table."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -12,6 +12,8 @@ from schuler_bench.plots.uplot import Dash
 
 PIN_WIDTH = 1.0
 """Curves of pins are thinner than those of the present run."""
+_FIRST = 100
+"""Place from which on `together` gives places to the methods of pins: beyond those of all others."""
 _DASHES: tuple[Dash, ...] = ((6, 3), (2, 3), (10, 3, 2, 3), (12, 4), (2, 6), (6, 3, 2, 3, 2, 3))
 _PLOTLY_DASHES = ("dash", "dot", "dashdot", "longdash", "2px,6px", "longdashdot")
 
@@ -86,18 +88,19 @@ def together(run: Run, pins: Sequence[Pinned]) -> Run:
         replace(
             pinned.method,
             method=pinned.method.method.model_copy(update={"name": pinned.label}),
+            place=place,
         )
-        for pinned in pinned_methods(pins)
+        for place, pinned in enumerate(pinned_methods(pins), start=_FIRST)
     )
     return replace(run, methods=(*run.methods, *more)) if more else run
 
 
-def restyled(figure: PlotlyFigure, run: Run, pins: Sequence[Pinned]) -> PlotlyFigure:
+def restyled(figure: PlotlyFigure, pins: Sequence[Pinned]) -> PlotlyFigure:
     """Draw what belongs to pins in a figure of `together` thinner and in the pins' colours; in place.
 
     Traces carry their method's place as ``legendgroup``.
     """
-    pinned = {str(place): each for place, each in enumerate(pinned_methods(pins), start=len(run.methods))}
+    pinned = {str(place): each for place, each in enumerate(pinned_methods(pins), start=_FIRST)}
     for trace in figure["data"]:
         pin = pinned.get(str(trace.get("legendgroup", "")))
         if pin is None:
@@ -118,9 +121,9 @@ def restyled(figure: PlotlyFigure, run: Run, pins: Sequence[Pinned]) -> PlotlyFi
     return figure
 
 
-def without_hidden(figure: PlotlyFigure, hidden: Sequence[bool]) -> None:
+def without_hidden(figure: PlotlyFigure, places: Iterable[int]) -> None:
     """Leave out the curves and notes of methods that are hidden, by their places; in place."""
-    gone = {str(place) for place, is_hidden in enumerate(hidden) if is_hidden}
+    gone = set(map(str, places))
     for trace in figure["data"]:
         if trace.get("legendgroup") in gone:
             trace["visible"] = False

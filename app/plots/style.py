@@ -1,12 +1,13 @@
 """The one visual language of all pictures: a colour per method, fonts, greys, line styles, the light theme.
 
-Colours follow a method's place in the scenario, so that a method looks the same in the Bode plot, the error
-curves, the 3D scene and the table. They are Okabe and Ito's colour-blind-safe set where it reads on white,
-then Tol's muted set.
+A method has a place in the palette by its name (`places`), so that it looks the same in the Bode plot, the
+error curves, the 3D scene and the table, and in every scenario. The colours are Okabe and Ito's
+colour-blind-safe set where it reads on white, then Tol's muted set.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
+from itertools import chain, product
 from typing import Any
 
 from navcore.foundation.text import Text
@@ -25,6 +26,8 @@ METHOD_COLORS = (
     "#2F9C93",  # teal
     "#6B6B6B",  # grey
 )
+STANDING = {"free": 0, "undamped": 0, "classic2": 1, "classic3": 2, "complementary": 3, "eight copies": 3}
+"""Names of several presets, which stand in them at different places, and their places in the palette."""
 TRUTH_COLOR = "#1F2933"
 
 INK = "#243B53"
@@ -75,9 +78,34 @@ def plain(name: str) -> str:
     return name if quoted == name else quoted
 
 
-def method_color(index: int) -> str:
-    """Colour of a method by its place in the scenario, ``#RRGGBB``."""
-    return METHOD_COLORS[index % len(METHOD_COLORS)]
+def places(names: Iterable[str], kept: Iterable[tuple[str, int]] = ()) -> dict[str, int]:
+    """Give the methods of a scenario places in the palette, no two the same one.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Of the methods.
+    kept : iterable of (str, int)
+        Places that names had before, the latest first: these come first, then `STANDING`, then a method's
+        place in the scenario, then the first free one.
+
+    Examples
+    --------
+    >>> places(["classic2", "Zhao", "mine"]), places(["mine", "Zhao"], [("mine", 2)])
+    ({'classic2': 1, 'Zhao': 0, 'mine': 2}, {'mine': 2, 'Zhao': 1})
+    """
+    names = tuple(names)
+    found: dict[str, int] = {}
+    own, free = zip(names, range(len(names)), strict=True), product(names, range(len(names)))
+    for name, place in chain(kept, STANDING.items(), own, free):
+        if name in names and name not in found and place not in found.values():
+            found[name] = place
+    return {name: found[name] for name in names}
+
+
+def method_color(place: int) -> str:
+    """Colour at a place of the palette, ``#RRGGBB``."""
+    return METHOD_COLORS[place % len(METHOD_COLORS)]
 
 
 def rgb(color: str) -> tuple[int, int, int]:
@@ -187,26 +215,26 @@ def without_legend(figure: Any, names: Sequence[str], width_px: float) -> None:
     layout["legend"] = layout.get("legend", {}) | {"traceorder": "normal"}
 
 
-def lines(method: str, index: int, width: float = LINE_WIDTH) -> dict[str, Any]:
+def lines(method: str, place: int, width: float = LINE_WIDTH) -> dict[str, Any]:
     """Make the common part of a method's curves, in all plotly figures."""
     return {
         "type": "scatter",
         "mode": "lines",
         "name": plain(method),
-        "legendgroup": str(index),
-        "line": {"color": method_color(index), "width": width, "simplify": False},
+        "legendgroup": str(place),
+        "line": {"color": method_color(place), "width": width, "simplify": False},
     }
 
 
-def marks(method: str, index: int, symbol: str, size: float, line: dict[str, Any]) -> dict[str, Any]:
+def marks(method: str, place: int, symbol: str, size: float, line: dict[str, Any]) -> dict[str, Any]:
     """Make the common part of a method's marks; they have no entry in the legend."""
     return {
         "type": "scatter",
         "mode": "markers",
         "name": plain(method),
-        "legendgroup": str(index),
+        "legendgroup": str(place),
         "showlegend": False,
-        "marker": {"symbol": symbol, "size": size, "color": method_color(index), "line": line},
+        "marker": {"symbol": symbol, "size": size, "color": method_color(place), "line": line},
     }
 
 

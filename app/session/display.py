@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from navcore.engine.run import Run, in_places
 from navcore.quantities import ERRORS, LIMITED, QUANTITIES, STATISTICS
+from navcore.scenario.model import Scenario
+from schuler_bench.plots import style
 from schuler_bench.plots.effective import SHOWN
 from schuler_bench.plots.envelope import BandKind
 from schuler_bench.plots.legend import State, after
@@ -19,6 +23,8 @@ SWEPT = tuple(key for key in LIMITED if QUANTITIES[key].kind is not None)
 """Quantities of a run that are swept."""
 AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
 """Quantities on the axes of the Pareto fronts."""
+
+_MOST_NAMES = 60
 
 
 def _one_of(names: Collection[str]) -> AfterValidator:
@@ -103,6 +109,8 @@ class Display(BaseModel):
         As pictures, or as tables with the worst runs.
     lesson : str
         Id of the open lesson; "": none.
+    places : tuple of (str, int)
+        Names of methods, the present ones first, and their places in the palette (`style.places`).
     lesson_step, lesson_shown : int
         Its step, and how often "Show me" was pressed: pages that watch follow both.
     """
@@ -153,6 +161,10 @@ class Display(BaseModel):
     lesson: Annotated[str, Field(max_length=255)] = ""
     lesson_step: Annotated[int, Field(ge=0, le=1000)] = 0
     lesson_shown: Annotated[int, Field(ge=0)] = 0
+    places: Annotated[
+        tuple[tuple[Annotated[str, Field(max_length=60)], Annotated[int, Field(ge=0, le=99)]], ...],
+        Field(max_length=_MOST_NAMES),
+    ] = ()
 
     @property
     def enlarged(self) -> bool:
@@ -174,6 +186,20 @@ class Display(BaseModel):
     def _with_state(self, key: str, state: State) -> tuple[tuple[str, State], ...]:
         others = tuple(entry for entry in self.legend if entry[0] != key)
         return others if state == "shown" else (*others[-59:], (key, state))
+
+    def colored(self, scenario: Scenario) -> dict[str, int]:
+        """Names of a scenario's methods, and their places in the palette."""
+        return style.places((method.name for method in scenario.method), self.places)
+
+    def knowing(self, scenario: Scenario) -> Display:
+        """Give a copy that keeps the places of a scenario's methods."""
+        kept = dict(self.places) | (found := self.colored(scenario))
+        places = sorted(kept.items(), key=lambda one: one[0] not in found)
+        return self.model_copy(update={"places": tuple(places[:_MOST_NAMES])})
+
+    def placed(self, run: Run) -> Run:
+        """Give the methods of a run their places in the palette."""
+        return replace(run, methods=in_places(run.methods, self.colored(run.scenario).values()))
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

@@ -94,6 +94,7 @@ class Session:
     ) -> None:
         self.id, self._name = id, (name := log_name(id))
         self.lock = threading.RLock()
+        self.display = Display()
         self._take(State(scenario, origin, first_editable(scenario), scenario))
         self.history = History(self.state)
         self.on_change: Callable[[], None] = lambda: None
@@ -104,7 +105,6 @@ class Session:
         self.run: Run | None = None
         self.prepared: Run | None = None
         self.run_number = 0
-        self.display = Display()
         self.uploads, self.study_file = Uploads(folder), ("", "")
         self._before = self.state
         self._views: list[View] = []
@@ -255,6 +255,7 @@ class Session:
     def _take(self, state: State) -> None:
         self.scenario, self.origin = state.scenario, state.origin
         self.selected, self.opened, self.outdated = state.selected, state.opened, True
+        self.display = self.display.knowing(state.scenario)
 
     def _show_state(self, state: State, by: object) -> None:
         self._take(state)
@@ -376,7 +377,7 @@ class Session:
         """Run a scenario; what the run that is shown has computed already is taken from it."""
         from navcore.engine.simulation import simulate
 
-        return simulate(scenario, progress, cancelled, self.run or self.prepared)
+        return self.display.placed(simulate(scenario, progress, cancelled, self.run or self.prepared))
 
     def _refuse(self, state: State, error: InputError) -> None:
         """Go back to the last scenario that ran, unless the user has gone on already."""

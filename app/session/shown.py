@@ -84,10 +84,17 @@ def shown(session: Session) -> Shown | None:
         laid(pins, run.scenario),
         baseline,
         None,
-        session.verifier.beside(run.scenario),
+        _placed(session.verifier.beside(run.scenario), display),
         session.envelopes.beside(run.scenario, display.envelope),
         selected,
     )
+
+
+def _placed(verified: Verified | None, display: Display) -> Verified | None:
+    if verified is None:
+        return None
+    both = verified.verification
+    return replace(verified, verification=replace(both, linear=display.placed(both.linear)))
 
 
 _MOST_PARTS = 2

@@ -54,13 +54,14 @@ class PairHandle:
 
     def meta(self, sources: Shown) -> dict[str, Any]:
         """Description of the handle in a figure's ``meta``."""
-        handle = handle_of(sources.run.scenario, sources.selected, self._block())
+        run, selected = sources.run, sources.selected
+        handle = handle_of(run.scenario, selected, self._block())
         note = {"told": handle.pop("told", "")}
         where = {
             "control": id_of(self._control),
             "kind": self._kind,
             "panels": [list(names) for names in self._panels],
-            "color": style.method_color(sources.selected),
+            "color": style.method_color(run.methods[min(selected, len(run.methods) - 1)].place),
         }
         return note | {"handle": where | handle}
 

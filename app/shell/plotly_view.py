@@ -88,8 +88,9 @@ class PlotlyView(PictureView[PlotlyFigure]):
     def _complete(self, found: Shown) -> PlotlyFigure:
         both = together(found.run, found.pins)
         figure = self.figure(both, found)
-        restyled(figure, found.run, found.pins)
-        without_hidden(figure, [found.display.state_of(one.method.name) == "hidden" for one in both.methods])
+        restyled(figure, found.pins)
+        state_of = found.display.state_of
+        without_hidden(figure, (one.place for one in both.methods if state_of(one.method.name) == "hidden"))
         return figure
 
     def _carrying(self, figure: PlotlyFigure, found: Shown) -> PlotlyFigure:

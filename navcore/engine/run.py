@@ -1,8 +1,10 @@
 """Result of a simulation."""
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import count
 from typing import Any, Literal
 
 import numpy as np
@@ -118,6 +120,8 @@ class MethodRun:
         1/s; None where no closed loop stands for the method.
     spans : tuple of Span
         The whole run, and from each ``from_h`` of the scenario's requirements on; in order.
+    place : int
+        By which pictures know the method, and from which its colour follows (`in_places`).
     """
 
     method: Method
@@ -136,6 +140,7 @@ class MethodRun:
     sigma: np.ndarray | None = None
     growth_per_s: float | None = None
     spans: tuple[Span, ...] = ()
+    place: int = 0
 
     def __repr__(self) -> str:
         """Name and status."""
@@ -157,6 +162,12 @@ class MethodRun:
         xi = self.law_series[damped, _XI]
         share = float(np.mean(damped))
         return LawInForce(share, float(np.min(xi)), float(np.mean(xi)), float(np.max(xi)))
+
+
+def in_places(methods: Iterable[MethodRun], places: Iterable[int] | None = None) -> tuple[MethodRun, ...]:
+    """Give each method its place; without ``places`` that in the scenario."""
+    pairs = zip(methods, count() if places is None else places, strict=False)
+    return tuple(each if each.place == place else replace(each, place=place) for each, place in pairs)
 
 
 @dataclass(frozen=True)

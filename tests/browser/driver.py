@@ -262,8 +262,8 @@ class Bench(Choosing):
         for pin in session.pins.all:
             session.pins.remove(pin.id)
         session.pins._next = 1
-        if session.display != Display():
-            self.show(**dict(Display()))
+        if session.display != (plain := Display(places=session.display.places)):
+            self.show(**dict(plain))
         if self.page.viewport_size != dict(zip(("width", "height"), self.size, strict=True)):
             self.resize(self.size)
         self.page.evaluate("look.clean")

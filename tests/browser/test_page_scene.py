@@ -71,9 +71,11 @@ def test_cameras_look_from_elsewhere(still: Bench) -> None:
 
 def test_the_computed_ship_is_that_of_the_selected_method(moving: Bench) -> None:
     page, number = moving.page, moving.run
-    assert tuple(page.evaluate("look.color")) == style.rgb(style.method_color(2))
+    assert tuple(page.evaluate("look.color")) == style.rgb(
+        style.method_color(style.STANDING["complementary"])
+    )
     moving.edit("classic2")
-    wanted = ",".join(map(str, style.rgb(style.method_color(1))))
+    wanted = ",".join(map(str, style.rgb(style.method_color(style.STANDING["classic2"]))))
     page.wait_for_function("c => String(look.color()) === c", arg=wanted)
     page.locator("#sb-stage table").get_by_text("classic2").wait_for()
     assert moving.run == number

@@ -114,7 +114,7 @@ def test_plotly_accepts_it_and_its_text_is_large_enough(name: str) -> None:
 @pytest.mark.parametrize("name", [*LOOPS, *SPECTRA])
 def test_a_pin_is_drawn_over_it_in_its_own_colour(name: str) -> None:
     run, pin = static_run(), Pinned("before <b>", "#C2185B", run_named("all kinds"))
-    alone, both = FIGURES[name](run), restyled(FIGURES[name](together(run, (pin,))), run, (pin,))
+    alone, both = FIGURES[name](run), restyled(FIGURES[name](together(run, (pin,))), (pin,))
 
     def look(trace: dict) -> dict:
         return trace.get("line") or trace["marker"]

@@ -42,7 +42,7 @@ def test_a_pin_whose_run_is_not_known_yet_is_left_out() -> None:
 
 def test_pinned_loop_is_the_pinned_one(pin: Pinned) -> None:
     run = static_run()
-    both, alone = restyled(bode(together(run, (pin,))), run, (pin,)), bode(pin.run)
+    both, alone = restyled(bode(together(run, (pin,))), (pin,)), bode(pin.run)
     np.testing.assert_array_equal(of_trace(both, "before &lt;b&gt;: compass"), of_trace(alone, "compass"))
 
 

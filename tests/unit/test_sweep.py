@@ -10,6 +10,7 @@ from navcore.scenario.model import Scenario
 from navcore.study.model import OF_RUNS
 from navcore.study.sweep import KEYS, sweep
 from schuler_bench.jobs.sweeper import Sweeper
+from schuler_bench.plots.style import places
 from schuler_bench.views.sweep.figure import refusals, sweep_figure
 
 _SHORT = ["run.duration_h=0.2", "reference.noise_mps=0.1", "imu.gyro_arw_dpsh=0.01"]
@@ -73,7 +74,7 @@ def test_a_setting_that_is_refused_is_a_gap(ship: Scenario) -> None:
     assert found is not None and found.metrics is not None
     for calm, *rough in found.metrics["tilt_rms_arcsec"]:
         assert calm is not None and rough == [None] * 4
-    named = sweep_figure({"sea": found}, "tilt_rms_arcsec", [m.name for m in ship.method])
+    named = sweep_figure({"sea": found}, "tilt_rms_arcsec", places(m.name for m in ship.method))
     assert any("12 runs without a value" in str(note["text"]) for note in named["layout"]["annotations"])
 
 
@@ -82,7 +83,7 @@ def test_a_value_out_of_range_is_told_in_full_beside_the_plots() -> None:
     assert found is not None and found.metrics is None
     told = refusals({"sea": found})
     assert len(told) == 1 and "sea state is not varied" in told[0] and "height_m = 6.0" in told[0]
-    shown = sweep_figure({"sea": found}, "tilt_rms_arcsec", ["free"])["layout"]["annotations"]
+    shown = sweep_figure({"sea": found}, "tilt_rms_arcsec", {"free": 0})["layout"]["annotations"]
     assert "not varied" in [str(note["text"]) for note in shown]
 
 
@@ -96,7 +97,7 @@ def test_the_picture_has_a_curve_a_method_and_a_line_at_the_present_value(ship: 
     found = {key: sweep(ship, key) for key in ("latitude", "grade")}
     names = [method.name for method in ship.method]
     known = {key: one for key, one in found.items() if one is not None}
-    picture = sweep_figure(known, "velocity_max_mps", names)
+    picture = sweep_figure(known, "velocity_max_mps", places(names))
     curves = [trace for trace in picture["data"] if "name" in trace]
     assert [trace["name"] for trace in curves] == [*names, *names]
     assert [bool(trace["showlegend"]) for trace in curves] == [True] * 3 + [False] * 3
@@ -108,7 +109,7 @@ def test_the_picture_has_a_curve_a_method_and_a_line_at_the_present_value(ship: 
 
 
 def test_an_empty_plot_keeps_its_place() -> None:
-    data = sweep_figure({}, "tilt_rms_arcsec", ["free"])["data"]
+    data = sweep_figure({}, "tilt_rms_arcsec", {"free": 0})["data"]
     assert [trace["xaxis"] for trace in data] == ["x", "x2", "x3", "x4"]
 
 

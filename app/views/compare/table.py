@@ -96,7 +96,7 @@ def lines_of(window: Window, run: Run, selected: int, pins: Sequence[Pin]) -> tu
         Pinned runs.
     """
     place = min(selected, len(window.run.methods) - 1)
-    lines = [_line(None, style.method_color(place), window.run, run, place, run.scenario.requirement)]
+    lines = [_own_line(window, run, place)]
     for pin in pins:
         place = edited(pin)
         if pin.run is None:
@@ -108,10 +108,12 @@ def lines_of(window: Window, run: Run, selected: int, pins: Sequence[Pin]) -> tu
 
 def lines_without_pins(window: Window, run: Run) -> tuple[Line, ...]:
     """Measure every method of the present run: what could be pinned."""
-    return tuple(
-        _line(None, style.method_color(place), window.run, run, place, run.scenario.requirement)
-        for place in range(len(window.run.methods))
-    )
+    return tuple(_own_line(window, run, place) for place in range(len(window.run.methods)))
+
+
+def _own_line(window: Window, run: Run, place: int) -> Line:
+    color = style.method_color(run.methods[place].place)
+    return _line(None, color, window.run, run, place, run.scenario.requirement)
 
 
 def _line(

@@ -72,7 +72,7 @@ class DiagramView(PictureView[str]):
         return Text(
             '<div class="sb-diagram" style="--room:{room:.0f}px">{svg}{beneath}</div>',
             room=max(room, found.height),
-            svg=diagram_svg(found, style.method_color(index), state),
+            svg=diagram_svg(found, style.method_color(run.methods[index].place), state),
             beneath=paper,
         )
 

@@ -161,11 +161,11 @@ def _lines(
 ) -> list[_Line]:
     none = np.empty(0)
     lines = []
-    for i, method in enumerate(run.methods):
+    for method in run.methods:
         state = display.state_of(method.method.name)
         values = np.full((len(time_s), len(NAMES)), np.nan)
         values[: len(method.plot.values)] = method.plot.values
-        curve = Curve(legend_name(method), style.method_color(i), none, state=state)
+        curve = Curve(legend_name(method), style.method_color(method.place), none, state=state)
         lines.append(_Line(curve, method, values))
     if overlay is not None:
         for line, method in zip(list(lines), overlay.run.methods, strict=True):
@@ -191,7 +191,7 @@ def _with_band(
     for index, (low, high) in enumerate(zip(envelope.low[:count], envelope.high[:count], strict=True)):
         if low is None or high is None or curves[index].state == "hidden":
             continue
-        bands.append((len(curves), len(curves) + 1, style.method_color(index) + _BAND))
+        bands.append((len(curves), len(curves) + 1, curves[index].color + _BAND))
         for word, values in (("upper", high), ("lower", low)):
             edge = np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si
             curves.append(
@@ -340,7 +340,6 @@ def _difference(verification: Verification, key: str, beside: UplotFigure, displ
         rows = min(len(full.t_s), len(simple.t_s), len(time_s))
         values[:rows] = full.rows[:rows, column] - simple.rows[:rows, column]
     unit = kind_unit(ERRORS[column].kind, float(np.nanmax(np.abs(differences), initial=0.0)), display)
-    names = [method.method.name for method in verification.strapdown.methods]
     return UplotFigure(
         key=f"difference_{key}",
         quantity=Text("{quantity} difference", quantity=beside.quantity),
@@ -350,7 +349,9 @@ def _difference(verification: Verification, key: str, beside: UplotFigure, displ
         time_unit=beside.time_unit,
         time=np.ascontiguousarray(time_s / beside.time_unit.si),
         curves=tuple(
-            Curve(name, style.method_color(i), values / unit.si, state=display.state_of(name))
-            for i, (name, values) in enumerate(zip(names, differences, strict=True))
+            replace(one, values=values / unit.si, name=method.method.name)
+            for one, method, values in zip(
+                beside.curves, verification.strapdown.methods, differences, strict=False
+            )
         ),
     )

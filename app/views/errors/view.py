@@ -51,10 +51,10 @@ def legend_html(
         entry(
             method.method.name,
             legend_name(method),
-            f"height:3px;background:{style.method_color(i)}",
+            f"height:3px;background:{style.method_color(method.place)}",
             state_of(method.method.name),
         )
-        for i, method in enumerate(run.methods)
+        for method in run.methods
         if methods
     ]
     if overlay is not None:

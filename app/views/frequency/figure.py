@@ -125,11 +125,11 @@ def bode(
     drawn: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
     lines: list[tuple[dict[str, Any], FrequencyCurve | None, FrequencyCurve | None]] = [
         (
-            style.lines(method.method.name, index),
+            style.lines(method.method.name, method.place),
             network_curve(loop_of(method)),
             transfer_curve(method, view.source, view.output),
         )
-        for index, method in enumerate(run.methods)
+        for method in run.methods
     ]
     names = [method.method.name for method in run.methods]
     silent = [name for name, (_, _, value) in zip(names, lines, strict=True) if value is None]
@@ -148,9 +148,9 @@ def bode(
                 drawn[yaxes[0]].append(curves[0][curve.finite])
                 drawn[yaxes[1]].append(curves[1])
     slow = [azimuth_curve(method) for method in run.methods]
-    for index, (method, y) in enumerate(zip(run.methods, slow, strict=True)):
+    for method, y in zip(run.methods, slow, strict=True):
         if y is not None:
-            line = style.lines(method.method.name, index)
+            line = style.lines(method.method.name, method.place)
             line |= {"line": line["line"] | {"dash": "dot"}}
             curves = decibel(y.value), phase(y.value)
             traces = pair(line, y.omega, curves, "x", ("y", "y2"), Text("%{{y:.2f}} dB, Y"))
@@ -158,7 +158,7 @@ def bode(
             for axis, curve in zip(("y", "y2"), (curves[0][y.finite], curves[1]), strict=True):
                 drawn[axis].append(curve)
     if discrete:
-        data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
+        data += [dots for method in run.methods for dots in _discrete_dots(run, method)]
     title = _HY if any(y is not None for y in slow) else _H
     return figure(data, _layout(run, view, drawn, silent, names, aspect, width_px, title))
 
@@ -179,7 +179,7 @@ def _magnitude(value: np.ndarray, view: TransferView) -> np.ndarray:
     return decibel(value * view.scale) if _in_decibel(view) else np.abs(value) * view.scale
 
 
-def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, Any]]:
+def _discrete_dots(run: Run, method: MethodRun) -> list[dict[str, Any]]:
     """Gain and phase of the running filter; the phase is that turn of it which lies next to the curve."""
     measured = measured_gain(method, law_step_s(run))
     if measured is None:
@@ -188,8 +188,8 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
     h = network_curve(loop_of(method))
     beside = np.interp(np.log(omega), np.log(h.omega), phase(h.value))
     angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
-    ring = {"color": style.method_color(index), "width": 2}
-    dots = style.marks(Text("{name} measured", name=method.method.name), index, "circle", 8, ring)
+    ring = {"color": style.method_color(method.place), "width": 2}
+    dots = style.marks(Text("{name} measured", name=method.method.name), method.place, "circle", 8, ring)
     dots |= {"x": packed(omega), "xaxis": "x", "marker": dots["marker"] | {"color": "white"}}
     return [
         dots | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": Text("%{{y:.3f}} dB measured")},

@@ -69,14 +69,14 @@ def nyquist(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> Plotl
     data: list[dict[str, Any]] = []
     words: list[str] = []
     highest: list[float] = []
-    for index, method in enumerate(run.methods):
+    for method in run.methods:
         ratio, value = open_loop(loop_of(method))
         level = 20.0 * np.log10(np.maximum(np.abs(value), 1e-12))
         margin = margins_of(method)
         words.append(margin_words(method, margin))
         highest.append(float(np.max(level)))
-        data += _curves(method, index, packed(ratio), level, value)
-        data += _marks(method, index, margin, words[-1])
+        data += _curves(method, packed(ratio), level, value)
+        data += _marks(method, margin, words[-1])
     layout |= _axes(run, min(*highest, 60.0), column_px, height_px)
     return figure(data, layout | {"shapes": _shapes(), "annotations": _notes(run, words, column_px)})
 
@@ -108,9 +108,9 @@ def margin_words(method: MethodRun, margin: Margins | None) -> str:
 
 
 def _curves(
-    method: MethodRun, index: int, x: dict[str, str], level: np.ndarray, value: np.ndarray
+    method: MethodRun, x: dict[str, str], level: np.ndarray, value: np.ndarray
 ) -> list[dict[str, Any]]:
-    common = style.lines(method.method.name, index) | {"showlegend": False}
+    common = style.lines(method.method.name, method.place) | {"showlegend": False}
     bode = common | {"x": x, "xaxis": "x"}
     # -L is H omega_s^2/omega^2: its phase, unwrapped, less 180 degrees
     phase = np.rad2deg(np.unwrap(np.angle(-value))) - 180.0
@@ -133,7 +133,7 @@ def _curves(
     ]
 
 
-def _marks(method: MethodRun, index: int, margin: Margins | None, words: str) -> list[dict[str, Any]]:
+def _marks(method: MethodRun, margin: Margins | None, words: str) -> list[dict[str, Any]]:
     """Dots at the crossover in all three plots, diamonds at the gain margins."""
     name, ring = method.method.name, {"width": 1.5, "color": "white"}
     dots: list[tuple[list[float], list[float]]] = [([], [])] * 3
@@ -148,8 +148,8 @@ def _marks(method: MethodRun, index: int, margin: Margins | None, words: str) ->
     hover = {
         "hovertemplate": Text("<b>{name}</b><br>{words}<extra></extra>", name=style.plain(name), words=words)
     }
-    dot = style.marks(Text("{name} margin", name=name), index, "circle", 9, ring) | hover
-    diamond = style.marks(Text("{name} gain margin", name=name), index, "diamond", 10, ring) | hover
+    dot = style.marks(Text("{name} margin", name=name), method.place, "circle", 9, ring) | hover
+    diamond = style.marks(Text("{name} gain margin", name=name), method.place, "diamond", 10, ring) | hover
     axes = ("x", "y"), ("x", "y2"), ("x2", "y3")
     return [
         *(
@@ -232,7 +232,7 @@ def _listed(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]
     """Margins of the methods at the top of the Nyquist panel, where no damped loop runs; named by place."""
     notes: list[dict[str, Any]] = []
     above = 0
-    for index, (method, content) in enumerate(zip(run.methods, words, strict=True)):
+    for method, content in zip(run.methods, words, strict=True):
         lines = wrapped(
             Text("{name}: {content}", name=method.method.name, content=content), int(column_px / _LETTER_PX)
         )
@@ -249,10 +249,10 @@ def _listed(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]
             align="left",
             xshift=4,
             yshift=-3 - _LINE_PX * above,
-            font={"size": style.FONT_SIZE, "color": style.method_color(index)},
+            font={"size": style.FONT_SIZE, "color": style.method_color(method.place)},
             bgcolor=_PAPER,
             borderpad=0,
-            name=str(index),
+            name=str(method.place),
         )
         notes.append(note)
         above += len(lines)

@@ -1,6 +1,6 @@
 """The methods as chips: colour, name and eye of each; a menu at the one that the controls edit."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from navcore.foundation.text import Text
 from schuler_bench.plots import style
@@ -28,13 +28,13 @@ _OPEN, _CLOSED = (
 """Paths of the eye: its curves are shown, and hidden."""
 
 
-def chips_html(names: Sequence[str], chosen: int, hidden: Sequence[bool], *, arranging: bool) -> str:
+def chips_html(names: Mapping[str, int], chosen: int, hidden: Sequence[bool], *, arranging: bool) -> str:
     """Return the row of chips.
 
     Parameters
     ----------
-    names : sequence of str
-        Of the methods.
+    names : mapping of str to int
+        Of the methods, with the places of their colours.
     chosen : int
         Method that the controls edit.
     hidden : sequence of bool
@@ -42,7 +42,10 @@ def chips_html(names: Sequence[str], chosen: int, hidden: Sequence[bool], *, arr
     arranging : bool
         Methods can be added, and the chosen one has a menu.
     """
-    chips = [_chip(at, name, at == chosen, hidden[at], arranging) for at, name in enumerate(names)]
+    chips = [
+        _chip(at, name, style.method_color(place), at == chosen, hidden[at], arranging)
+        for at, (name, place) in enumerate(names.items())
+    ]
     if arranging:
         chips.append(cell("+", "sb-chip sb-plus", tag="button", **_ADD))
     return Text(
@@ -50,7 +53,7 @@ def chips_html(names: Sequence[str], chosen: int, hidden: Sequence[bool], *, arr
     )
 
 
-def _chip(place: int, name: str, chosen: bool, hidden: bool, arranging: bool) -> str:
+def _chip(place: int, name: str, color: str, chosen: bool, hidden: bool, arranging: bool) -> str:
     eye = Text("Show {name}", name=name) if hidden else Text("Hide {name}", name=name)
     return Text(
         '<div class="sb-chip" data-chosen="{chosen}" data-hidden="{hidden}"><button aria-pressed="{chosen}" '
@@ -64,7 +67,7 @@ def _chip(place: int, name: str, chosen: bool, hidden: bool, arranging: bool) ->
         select=SELECT,
         ask=EYE,
         place=place,
-        color=style.method_color(place),
+        color=color,
         name=name,
         eye=eye,
         path=_CLOSED if hidden else _OPEN,

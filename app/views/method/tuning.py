@@ -81,7 +81,9 @@ class TuningPanel:
                 html += notices.note(
                     [Text("Found for the scenario as it was before: find it anew.")], "warning"
                 )
-            html += table_html(result, style.method_color(index))
+            html += table_html(
+                result, style.method_color(self._session.display.colored(scenario)[method.name])
+            )
         show_html(self._found, html)
 
     def _settings(self) -> TuningSettings:

@@ -121,8 +121,8 @@ class MethodView(View):
         self._show_chips()
 
     def _show_chips(self) -> None:
-        names = [method.name for method in self.session.scenario.method]
         display = self.session.display
+        names = display.colored(self.session.scenario)
         hidden = [display.state_of(name) == "hidden" for name in names]
         show_html(
             self._chips, chips_html(names, self.session.selected, hidden, arranging=not display.enlarged)

@@ -195,7 +195,7 @@ def system_html(run: Run, *, folded: bool = True) -> str:
         Text("tilt, velocity: times the floor"),
     )
     floors, lines = times_the_floor(run.scenario), []
-    for i, (method, floor) in enumerate(zip(run.methods, floors, strict=True)):
+    for method, floor in zip(run.methods, floors, strict=True):
         law = method.law_in_force
         texts = (
             method.method.name,
@@ -204,7 +204,8 @@ def system_html(run: Run, *, folded: bool = True) -> str:
             _coefficient(law),
             floor,
         )
-        lines.append(row((cell(quoted(text)) for text in texts), style=f"color:{style.method_color(i)}"))
+        color = style.method_color(method.place)
+        lines.append(row((cell(quoted(text)) for text in texts), style=f"color:{color}"))
     head = row(cell(text, "sb-m", tag="th") for text in heads)
     return Text(
         '<details{state} class="sb-system"><summary>Whole system, law in force, floor</summary>'
@@ -298,8 +299,9 @@ def metrics_html(
 
 
 def _method_head(run: Run, index: int, columns: int) -> str:
-    name = Text("<span>{name:html}</span>", name=run.methods[index].method.name)
-    return cell(name, "sb-h", tag="th", colspan=columns, style=f"color:{style.method_color(index)}")
+    method = run.methods[index]
+    name = Text("<span>{name:html}</span>", name=method.method.name)
+    return cell(name, "sb-h", tag="th", colspan=columns, style=f"color:{style.method_color(method.place)}")
 
 
 def _part(whole: Row, methods: Sequence[int]) -> Row:

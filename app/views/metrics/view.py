@@ -44,7 +44,7 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0) -> str:
     result, fits = explainer.result, explainer.asked is run
     if fits and result is not None:
         name, causes = result.methods[min(selected, len(result.methods) - 1)]
-        return _box(_lines(result), "", Text("{name}: {told}", name=name, told=_told(causes, result)))
+        return _box(_lines(result, run), "", Text("{name}: {told}", name=name, told=_told(causes, result)))
     if explainer.words:
         return _box("", Text("What dominates this result could not be found."))
     state = _WAITS
@@ -54,7 +54,7 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0) -> str:
         )
     if result is None or len(result.methods) != len(run.methods):
         return _box("", state)
-    old = Text('<div class="sb-old">{lines}</div>', lines=_lines(result))
+    old = Text('<div class="sb-old">{lines}</div>', lines=_lines(result, run))
     return _box(old, Text("{state} Below: of an earlier run.", state=state))
 
 
@@ -83,7 +83,7 @@ def _told(causes: tuple[Cause, ...], result: Why) -> str:
     return _words(causes, result, POSITION, TILT) or Text("neither position error nor tilt")
 
 
-def _lines(result: Why) -> str:
+def _lines(result: Why, run: Run) -> str:
     rows = Text.joined(
         "",
         (
@@ -91,11 +91,11 @@ def _lines(result: Why) -> str:
                 '<div title="{words:html}"><span class="sb-swatch" style="background:{method_color}">'
                 "</span><b>{name:html}</b>: {told:html}.</div>",
                 words=_words(causes, result, HEADING),
-                method_color=style.method_color(index),
+                method_color=style.method_color(method.place),
                 name=name,
                 told=_told(causes, result),
             )
-            for index, (name, causes) in enumerate(result.methods)
+            for method, (name, causes) in zip(run.methods, result.methods, strict=True)
         ),
     )
     return rows + Text.joined(

@@ -112,8 +112,8 @@ def poles(
         re, im = _panel(half, shape)
         data.append(damping_lines(suffix, re, im))
         data += locus_traces(run, selected, locus, suffix)
-        for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
-            data += _method_marks(method, i, (roots, zeros), suffix, unit)
+        for method, own in zip(run.methods, marks, strict=True):
+            data += _method_marks(method, own, suffix, unit)
         layout |= _axes(suffix, re, im, domain, unit.sign)
         title = Text("<b>{titles}</b>", titles=style.fitting(unit.titles[suffix], panel_px))
         if suffix and note:  # in plain letters: those of a parameter's ends take more room
@@ -124,7 +124,10 @@ def poles(
         shapes += _boundary(suffix)
         shapes += settling_shapes(suffix, re, omega_s, panel_px)
         shapes += forbidden(suffix, re, im, limits or {}, omega_s)
-    notes += _far_zeros([zeros for _, zeros in marks], _panel(full, shape)[0][0])
+    notes += _far_zeros(
+        {one.place: zeros for one, (_, zeros) in zip(run.methods, marks, strict=True)},
+        _panel(full, shape)[0][0],
+    )
     data += [style.key(name, symbol, width) for name, (symbol, width) in _KEYS.items()]
     layout["meta"] |= {"pick": _PICK}
     return figure(data, layout | {"shapes": shapes, "annotations": notes})
@@ -155,13 +158,13 @@ def _panel(half_height: float, shape: float) -> tuple[Interval, Interval]:
 
 
 def _method_marks(
-    method: MethodRun, index: int, marks: tuple[np.ndarray, np.ndarray], suffix: str, unit: _Unit
+    method: MethodRun, marks: tuple[np.ndarray, np.ndarray], suffix: str, unit: _Unit
 ) -> list[dict[str, Any]]:
     roots, zeros = marks
-    color, name = style.method_color(index), method.method.name
+    color, name, place = style.method_color(method.place), method.method.name, method.place
     axes = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
     plain = style.plain(name)
-    cross = style.marks(name, index, "x-thin", 11, {"color": color, "width": 2.6}) | axes
+    cross = style.marks(name, place, "x-thin", 11, {"color": color, "width": 2.6}) | axes
     cross |= {
         "x": packed(np.real(roots)),
         "y": packed(np.imag(roots)),
@@ -172,7 +175,7 @@ def _method_marks(
     if not len(zeros):
         return [cross]
     ring = (
-        style.marks(Text("{name} zeros", name=name), index, "circle-open", 10, {"color": color, "width": 2})
+        style.marks(Text("{name} zeros", name=name), place, "circle-open", 10, {"color": color, "width": 2})
         | axes
     )
     ring |= {
@@ -272,11 +275,11 @@ def _ray_end(ratio: float, re: Interval, im: Interval) -> tuple[float, float]:
     return -cosine * length, sine * length
 
 
-def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
+def _far_zeros(zeros: dict[int, np.ndarray], left: float) -> list[dict[str, Any]]:
     """Notes for real zeros so far out that showing them would press all poles together."""
     beyond = [
-        (index, float(zero.real))
-        for index, own in enumerate(zeros)
+        (place, float(zero.real))
+        for place, own in zeros.items()
         for zero in own
         if zero.real < left and abs(zero.imag) < 1e-6 * abs(zero)
     ]
@@ -291,10 +294,10 @@ def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
             yanchor="bottom",
             xshift=4,
             yshift=3 + 18 * row,
-            font={"size": style.FONT_SIZE, "color": style.method_color(index)},
-            name=str(index),
+            font={"size": style.FONT_SIZE, "color": style.method_color(place)},
+            name=str(place),
             bgcolor=PAPER,
             borderpad=0,
         )
-        for row, (index, value) in enumerate(beyond)
+        for row, (place, value) in enumerate(beyond)
     ]

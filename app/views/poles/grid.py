@@ -76,7 +76,7 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
         return []
     method = run.methods[index]
     scaled = locus.poles / method.network.omega_s
-    color, name, count = style.method_color(index), method.method.name, scaled.shape[1]
+    place, name, count = method.place, method.method.name, scaled.shape[1]
     label = locus_fields(method.method.network)[field]
     line = np.concatenate([scaled, np.full((1, count), complex(math.nan, math.nan))]).T.ravel()
     ends = np.concatenate([scaled[0], scaled[-1]])
@@ -90,17 +90,15 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
             label=label,
         ),
     }
-    branches = style.lines(Text("{name} locus", name=name), index) | common
+    branches = style.lines(Text("{name} locus", name=name), place) | common
     branches |= {
         "x": packed(np.real(line)),
         "y": packed(np.imag(line)),
         "customdata": packed(np.tile(np.append(locus.values, math.nan), count)),
-        "line": {"color": color, "width": 1.6, "dash": "dot"},
+        "line": {"color": style.method_color(place), "width": 1.6, "dash": "dot"},
     }
-    marks = (
-        style.marks(Text("{name} locus ends", name=name), index, "", 7, {"width": 1.5, "color": color})
-        | common
-    )
+    edge = {"width": 1.5, "color": style.method_color(place)}
+    marks = style.marks(Text("{name} locus ends", name=name), place, "", 7, edge) | common
     marks |= {
         "x": packed(np.real(ends)),
         "y": packed(np.imag(ends)),

@@ -41,13 +41,13 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     names = [*(m.method.name for m in run.methods), *(Text("{kind} mode", kind=kind) for kind in _SYMBOLS)]
     data: list[dict[str, Any]] = []
     rates = []
-    for index, method in enumerate(run.methods):
+    for rank, method in enumerate(run.methods):
         kind = method.method.kind
         acting, azimuth = kind.acting(method.network), kind.azimuth(method.method, method.network.omega_s)
         growth = growth_over_latitude(acting, LATITUDES * DEG, run.scenario.earth, azimuth)
         rates.append(_DAY * growth)
-        data += _marks(method, index)
-        data += _growth(run, method, index, rates[-1])
+        data += _marks(method, rank)
+        data += _growth(run, method, rates[-1])
     data += [style.key(Text("{kind} mode", kind=kind), symbol, 2) for kind, symbol in _SYMBOLS.items()]
     finite = np.concatenate([[0.0], *rates])
     finite = finite[np.isfinite(finite)]
@@ -85,18 +85,22 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     return figure(data, layout)
 
 
-def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
+def _marks(method: MethodRun, rank: int) -> list[dict[str, Any]]:
     """Modes of one method in units of omega_s, one trace a kind of mode."""
     name, traces = method.method.name, []
-    edge = {"color": style.method_color(index), "width": 2.4}
+    edge = {"color": style.method_color(method.place), "width": 2.4}
     for kind, symbol in _SYMBOLS.items():
         modes, main = method.whole.named(kind), kind == SCHULER_MODE
         at = np.array([mode.eigenvalue for mode in modes], dtype=np.complex128) / method.network.omega_s
         # The 24 h modes of all methods lie next to each other: the later ones are smaller.
-        size = max(15 - 4 * index, 5) if kind == EARTH_MODE else 11
+        size = max(15 - 4 * rank, 5) if kind == EARTH_MODE else 11
         traces.append(
             style.marks(
-                name if main else Text("{name} {kind}", name=name, kind=kind), index, symbol, size, edge
+                name if main else Text("{name} {kind}", name=name, kind=kind),
+                method.place,
+                symbol,
+                size,
+                edge,
             )
             | {
                 "showlegend": main,
@@ -124,19 +128,19 @@ def _about(mode: Mode) -> str:
     return Text.joined("<br>", lines)
 
 
-def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[dict[str, Any]]:
+def _growth(run: Run, method: MethodRun, rates: np.ndarray) -> list[dict[str, Any]]:
     """Curve of the growth over the latitude, and the point of the site."""
     name, here = method.method.name, method.whole.earth_growth
     plain = style.plain(name)
     common = {"xaxis": "x2", "yaxis": "y2", "showlegend": False}
-    curve = style.lines(Text("{name} growth", name=name), index) | common
-    site = style.marks(Text("{name} at the site", name=name), index, "diamond", 11, {}) | common
+    curve = style.lines(Text("{name} growth", name=name), method.place) | common
+    site = style.marks(Text("{name} at the site", name=name), method.place, "diamond", 11, {}) | common
     return [
         curve
         | {
             "x": packed(LATITUDES),
             "y": packed(rates),
-            "line": {"color": style.method_color(index), "width": 2},
+            "line": {"color": style.method_color(method.place), "width": 2},
             "hovertemplate": Text(
                 "<b>{plain}</b><br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>", plain=plain
             ),

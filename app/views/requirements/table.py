@@ -43,9 +43,7 @@ def requirements_html(
     judged = together(run, pins)
     shown = range(len(judged.methods)) if methods is None else methods
     judged_all = verdicts(judged, run.scenario.requirement)
-    lines = [
-        Text("solid {method_color}", method_color=style.method_color(i)) for i in range(len(run.methods))
-    ]
+    lines = [Text("solid {method_color}", method_color=style.method_color(one.place)) for one in run.methods]
     lines += [Text("dashed {color}", color=pinned.color) for pinned in pinned_methods(pins)]
     heads = (
         cell(quoted(judged.methods[i].method.name), "sb-h", tag="th", style=f"border-bottom:3px {lines[i]}")

@@ -79,7 +79,7 @@ def pendulum(run: Run, t_s: float) -> Pendulum:
     peak = max((_peak(m) for m in run.methods if m.status != "diverged"), default=0.0)
     peak = peak or max((_peak(m) for m in run.methods), default=0.0)
     factor = round_down(_WIDEST / peak, _FACTORS) if 0.0 < peak < _WIDEST else 1.0
-    bobs = tuple(_bob(index, method, t_s, period) for index, method in enumerate(run.methods))
+    bobs = tuple(_bob(method, t_s, period) for method in run.methods)
     return Pendulum(bobs, factor, period, _plane([bob.trail for bob in bobs]))
 
 
@@ -113,11 +113,11 @@ def _peak(method: MethodRun) -> float:
     return max(method.errors[name]["max_abs"] for name in components(TILT))
 
 
-def _bob(index: int, method: MethodRun, t_s: float, period: float) -> Bob:
+def _bob(method: MethodRun, t_s: float, period: float) -> Bob:
     first, last = np.searchsorted(method.t_s, [t_s - period, t_s])
     chosen = np.unique(np.linspace(first, max(last - 1, first), _TRAIL_POINTS).astype(int))
     trail = np.vstack([method.rows[chosen[chosen < len(method.rows)]], row_at(method.t_s, method.rows, t_s)])
-    return Bob(style.method_color(index), trail[:, [PHI_N, PHI_E]] * (-1.0, 1.0))
+    return Bob(style.method_color(method.place), trail[:, [PHI_N, PHI_E]] * (-1.0, 1.0))
 
 
 def pendulum_svg(now: Pendulum) -> str:
@@ -264,13 +264,13 @@ def moment(run: Run, t_s: float) -> Moment:
     pitch, roll, heading, ve, vn = truth.tolist()
     attitude = attitude_matrix(pitch, roll, heading)
     methods = []
-    for index, method in enumerate(run.methods):
+    for method in run.methods:
         errors = row_at(method.t_s, method.rows[:, :QUANTITIES], t_s)
         speed = math.hypot(ve + errors[DV_E], vn + errors[DV_N])
         methods.append(
             MethodMoment(
                 name=method.method.name,
-                color=style.method_color(index),
+                color=style.method_color(method.place),
                 pose=Pose(*_computed(method, errors, attitude, t_s), speed),
                 errors=errors,
                 ended=len(method.t_s) == 0 or t_s > method.t_s[-1] + 1e-6,

@@ -266,7 +266,7 @@ def track(
         methods=tuple(
             MethodTrack(
                 name=method.method.name,
-                color=style.rgb(style.method_color(i)),
+                color=style.rgb(style.method_color(method.place)),
                 points=lines[i],
                 error_m=errors[i],
                 line=needed(lines[i], _UNSEEN),

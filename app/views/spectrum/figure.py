@@ -52,14 +52,14 @@ def spectrum(
     span_s = float(run.t_s[-1]) if len(run.t_s) else 0.0
     unit, period_unit = plot.unit, _period_unit(display or Display(), span_s)
     data, peaks, shortest = [], [], math.inf
-    for index, method in enumerate(run.methods):
+    for method in run.methods:
         period_s, amplitude = amplitude_spectrum(method, column)
         if not len(period_s):
             continue
         size = amplitude / unit.si
         peaks.append(float(size.max()))
         shortest = min(shortest, float(period_s.min()))
-        trace = style.lines(method.method.name, index, style.CURVE_WIDTH)
+        trace = style.lines(method.method.name, method.place, style.CURVE_WIDTH)
         hover = Text(
             "<b>{method}</b><br>%{{x:.4g}} {period}: %{{y:.4g}} {unit}<extra></extra>",
             method=trace["name"],

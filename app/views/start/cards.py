@@ -24,6 +24,7 @@ from navcore.networks.base import LinearNetwork
 from navcore.scenario.file import load, presets, scenario_hash
 from schuler_bench.plots import style
 from schuler_bench.plots.units import duration, rounded, settling
+from schuler_bench.session.display import Display
 
 _WIDE, _HIGH = 150, 62
 _LOW_DB, _HIGH_DB = -12.0, 18.0
@@ -154,8 +155,8 @@ def card_svg(run: Run, of: str) -> str:
     symbol = "δVE" if column == DV_E else "δVN"
     lines = "".join(
         f'<polyline points="{_points(m.plot.t_s / span, m.plot.values[:, column] / peak)}" '
-        f'stroke="{style.method_color(i)}"/>'
-        for i, m in enumerate(run.methods)
+        f'stroke="{style.method_color(m.place)}"/>'
+        for m in Display().placed(run).methods
     )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" data-of="{of}">'

@@ -106,7 +106,7 @@ def step(
         _Panel("4", loop_s, caused_tilt, angle, of_tilt, f"φ ({angle.name})"),
     )
     data = [_trace(method, i, panel) for panel in panels for i, method in enumerate(run.methods)]
-    data += [_settled_mark(method, i, tilt[i], loop_s) for i, method in enumerate(run.methods)]
+    data += [_settled_mark(method, own, loop_s) for method, own in zip(run.methods, tilt, strict=True)]
     layout = _layout(run, panels, stable, aspect, width_px)
     layout["shapes"] += _forbidden(limits or {}, loop_s, angle, cause)
     return figure(data, layout)
@@ -161,7 +161,7 @@ def _range(curves: list[np.ndarray], unit: Unit) -> list[float]:
 
 def _trace(method: MethodRun, index: int, panel: _Panel) -> dict[str, Any]:
     values = panel.curves[index]
-    return style.lines(method.method.name, index) | {
+    return style.lines(method.method.name, method.place) | {
         "x": [] if values is None else _minutes(panel.span_s),
         "y": [] if values is None else packed(values / panel.unit.si),
         "xaxis": f"x{panel.suffix}",
@@ -171,14 +171,14 @@ def _trace(method: MethodRun, index: int, panel: _Panel) -> dict[str, Any]:
     }
 
 
-def _settled_mark(method: MethodRun, index: int, tilt: np.ndarray | None, span_s: float) -> dict[str, Any]:
+def _settled_mark(method: MethodRun, tilt: np.ndarray | None, span_s: float) -> dict[str, Any]:
     """Diamond where the response to an initial tilt has come to rest; no point where it does not here."""
     settles = None if method.method.undamped else method.loop.settling_s
     x, y = [], []
     if settles is not None and tilt is not None and settles <= span_s:
         x, y = [settles / MINUTE], [float(np.interp(settles, time_grid(span_s, POINTS), tilt))]
     edge = {"width": 1.5, "color": "white"}
-    mark = style.marks(Text("{name} settled", name=method.method.name), index, "diamond", 11, edge)
+    mark = style.marks(Text("{name} settled", name=method.method.name), method.place, "diamond", 11, edge)
     hover = Text("settled to 2 % at %{{x:.4g}} min<extra></extra>")
     return mark | {"x": x, "y": y, "xaxis": "x", "yaxis": "y", "hovertemplate": hover}
 

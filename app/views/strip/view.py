@@ -97,7 +97,7 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
             '<button class="sb-edit" data-sb-drops data-command="{edit} {place}" aria-pressed="{pressed}" '
             'title="Edit {name:html}"><b>{name:html}</b>{said}{facts}</button></div>',
             state=state,
-            color=style.method_color(place),
+            color=style.method_color(method.place),
             legend=COMMAND,
             hint=hint(state),
             edit=EDIT,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from navcore.foundation.text import Text
@@ -40,6 +40,7 @@ def study_figure(
     method: str,
     aspect: float,
     *,
+    kept: Sequence[tuple[str, int]] = (),
     width_px: float = 940.0,
     note: str = "",
 ) -> PlotlyFigure:
@@ -55,6 +56,8 @@ def study_figure(
         Whose map and factors are shown; curves are those of all methods.
     aspect, width_px : float
         Height over width of the figure, and its expected width on screen.
+    kept : sequence of (str, int)
+        Places of names in the palette, as of `schuler_bench.plots.style.places`.
     note : str
         What is to be heeded, above the pictures.
     """
@@ -75,7 +78,12 @@ def study_figure(
             told.append(Text("mean over {factors}", factors=", ".join(map(varied_label, columns[2:]))))
     else:
         data = _curves(
-            layout, cells or [document | {"factors": {}}], columns, metric, names, label_of(metric)
+            layout,
+            cells or [document | {"factors": {}}],
+            columns,
+            metric,
+            style.places(names, kept),
+            label_of(metric),
         )
         told = [title, Text("bars: 5 to 95 % of the runs") if metric != MET else Text("bars: 95 % interval")]
     layout["xaxis"]["domain"] = [0.0, share]
@@ -86,7 +94,12 @@ def study_figure(
 
 
 def series_figure(
-    document: dict[str, Any], name: str, aspect: float, *, width_px: float = 940.0
+    document: dict[str, Any],
+    name: str,
+    aspect: float,
+    *,
+    width_px: float = 940.0,
+    kept: Sequence[tuple[str, int]] = (),
 ) -> PlotlyFigure:
     """Median of an error over time, and the band between its quantiles of 5 and 95 %, of every method."""
     names = [one["name"] for one in document["methods"]]
@@ -95,15 +108,17 @@ def series_figure(
     layout["yaxis"] = style.axis(anchor="x")
     layout["annotations"].append(style.panel_title(Text("{name}, median and 5 to 95 %", name=name)))
     data: list[dict[str, Any]] = []
-    for index, one in enumerate(document["methods"]):
+    places = style.places(names, kept)
+    for one in document["methods"]:
         found, hours = one["series"][name], document["epochs_h"]
-        red, green, blue = style.rgb(style.method_color(index))
+        place = places[one["name"]]
+        red, green, blue = style.rgb(style.method_color(place))
         band = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip",
-                "showlegend": False, "name": style.plain(one["name"]), "legendgroup": str(index)}  # fmt: skip
+                "showlegend": False, "name": style.plain(one["name"]), "legendgroup": str(place)}  # fmt: skip
         data.append(band | {"x": hours, "y": found["q05"]})
         fill = f"rgba({red},{green},{blue},0.15)"
         data.append(band | {"x": hours, "y": found["q95"], "fill": "tonexty", "fillcolor": fill})
-        data.append(style.lines(one["name"], index) | {"x": hours, "y": found["median"]})
+        data.append(style.lines(one["name"], place) | {"x": hours, "y": found["median"]})
     return figure(data, layout)
 
 
@@ -207,7 +222,7 @@ def _curves(
     cells: Sequence[dict[str, Any]],
     columns: Sequence[str],
     metric: str,
-    names: Sequence[str],
+    names: Mapping[str, int],
     label: str,
 ) -> list[dict[str, Any]]:
     """Add the axes of curves over one factor, or of one point a method; return the curves."""
@@ -219,7 +234,7 @@ def _curves(
         anchor="y", tickvals=[*range(len(names))], ticktext=[*map(style.plain, names)]
     )  # fmt: skip
     data, every = [], []
-    for index, name in enumerate(names):
+    for index, (name, place) in enumerate(names.items()):
         rows = [next((one for one in cell["methods"] if one["name"] == name), None) for cell in cells]
         found = [(None, None, None) if one is None else _value(one, metric) for one in rows]
         lows, middles, highs = ([one[part] for one in found] for part in range(3))
@@ -231,10 +246,10 @@ def _curves(
             "arrayminus": [_beyond(middle, low) for middle, low in zip(middles, lows, strict=True)],
             "thickness": 1.2,
             "width": 4,
-            "color": style.method_color(index),
+            "color": style.method_color(place),
         }
         beside = 0.04 * (index - 0.5 * (len(names) - 1))
-        line = style.lines(name, index) | {"mode": "lines+markers", "marker": {"size": 6}}
+        line = style.lines(name, place) | {"mode": "lines+markers", "marker": {"size": 6}}
         at = [k + beside for k in range(len(rows))] if columns else [index]
         hover = Text("<b>{name}</b><br>%{{y:.4g}}<extra></extra>", name=style.plain(name))
         data.append(line | {"x": at, "y": middles, "error_y": error, "hovertemplate": hover})

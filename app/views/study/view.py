@@ -192,15 +192,17 @@ class StudyView(PlotlyView):
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Map or curves, and what counts most; of a study that keeps errors over time, the first of them."""
         del both
-        document = self._document
+        document, kept = self._document, found.display.places
         task = self._studier.asked
         old = task is not None and task.present not in (None, found.run.scenario)
         note = _OLD if old else ""
         series = document.get("methods", [{}])[0].get("series")
         if series and not document.get("cells"):
-            return series_figure(document, next(iter(series)), self.aspect, width_px=self.width_px)
+            return series_figure(document, next(iter(series)), self.aspect, width_px=self.width_px, kept=kept)
         metric, method = self._shown_metric, self._shown_method
-        return study_figure(document, metric, method, self.aspect, width_px=self.width_px, note=note)
+        return study_figure(
+            document, metric, method, self.aspect, width_px=self.width_px, kept=kept, note=note
+        )
 
     def picture(self, found: Shown) -> PlotlyFigure:
         """Make the picture; a figure without anything while there is none, or the tables are shown."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from navcore.foundation.text import Text
@@ -27,7 +27,7 @@ _EMPTY = Text("Sweep: one click runs all methods over these four.")
 def sweep_figure(
     known: Mapping[str, Sweep],
     metric: str,
-    methods: Sequence[str],
+    methods: Mapping[str, int],
     aspect: float = 0.46,
     *,
     width_px: float = 940.0,
@@ -41,8 +41,8 @@ def sweep_figure(
         By key; a plot without one is empty.
     metric : str
         One of `navcore.study.model.OF_RUNS`.
-    methods : sequence of str
-        Names of the methods.
+    methods : mapping of str to int
+        Names of the methods, and the places of their colours.
     aspect, width_px : float
         Height over width of the figure, and its expected width on screen.
     note : str
@@ -52,7 +52,7 @@ def sweep_figure(
     title = Text("<b>{label}</b> ({unit})", label=row.label, unit=row.shown)
     margin = {"l": _LEFT_PX, "r": _RIGHT_PX, "t": _TOP_PX, "b": _BOTTOM_PX}
     layout = style.framed(
-        methods,
+        [*methods],
         aspect,
         width_px,
         margin,
@@ -95,7 +95,7 @@ def _panel(
     found: Sweep | None,
     key: str,
     metric: str,
-    methods: Sequence[str],
+    methods: Mapping[str, int],
     suffix: str,
     domains: tuple[list[float], list[float]],
     named: bool,
@@ -139,14 +139,14 @@ def _panel(
     layout["shapes"].append(style.upright(found.present, f"x{suffix}", f"y{suffix} domain"))
     unit = QUANTITIES[metric].shown
     curves = []
-    for index, (name, values) in enumerate(zip(methods, rows, strict=True)):
+    for (name, place), values in zip(methods.items(), rows, strict=True):
         hover = Text(
             "<b>{method}</b><br>{label} %{{x:.4g}}<br>%{{y:.4g}} {unit}<extra></extra>",
             method=style.plain(name),
             label=SWEPT[key][0],
             unit=unit,
         )
-        line = style.lines(name, index) | {"mode": "lines+markers", "marker": {"size": 5}}
+        line = style.lines(name, place) | {"mode": "lines+markers", "marker": {"size": 5}}
         where = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
         shown = {"x": [*found.values], "y": [*values], "hovertemplate": hover, "showlegend": named}
         curves.append(line | where | shown)

@@ -74,7 +74,7 @@ class SweepView(PlotlyView):
         """Four plots."""
         del both
         swept, known = self._sweeper.swept, self._sweeper.known
-        names = [method.name for method in (swept or found.run.scenario).method]
+        names = found.display.colored(swept or found.run.scenario)
         old = bool(known) and not self._sweeper.fits(found.run.scenario)
         metric, note = found.display.swept, _OLD if old else ""
         return sweep_figure(known, metric, names, self.aspect, width_px=self.width_px, note=note)

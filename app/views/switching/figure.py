@@ -36,12 +36,11 @@ _LONGEST = 8
 
 
 class Switched(NamedTuple):
-    """A method that does not always damp alike: its place in the scenario, and what its policy measures.
+    """A method that does not always damp alike, and what its policy measures.
 
     The limits are its thresholds, in the unit of the measure.
     """
 
-    place: int
     run: MethodRun
     measure: Measure | None
     limits: tuple[Limit, ...]
@@ -54,8 +53,8 @@ _Pair = tuple[Switched, np.ndarray]
 def switched_methods(run: Run) -> tuple[Switched, ...]:
     """Methods with a policy that is not constant; empty when nothing switches."""
     return tuple(
-        Switched(i, method, method.method.policy.measure, method.method.policy.limits())
-        for i, method in enumerate(run.methods)
+        Switched(method, method.method.policy.measure, method.method.policy.limits())
+        for method in run.methods
         if not method.method.undamped and method.method.policy.id != "constant"
     )
 
@@ -102,7 +101,7 @@ def switching_plots(run: Run, wanted_time: str = AUTO) -> tuple[UplotFigure, ...
 def _curve(pair: _Pair, column: int, si: float = 1.0, above: float = 0.0) -> Curve:
     """One column of a method's values, in a unit of ``si``, drawn higher by ``above``."""
     method, values = pair
-    color = style.method_color(method.place)
+    color = style.method_color(method.run.place)
     return Curve(method.run.method.name, color, np.ascontiguousarray(values[:, column] / si + above))
 
 
@@ -143,7 +142,7 @@ def shared_limits(methods: Sequence[Switched]) -> list[tuple[str, float, str]]:
     owners: dict[tuple[str, float], list[int]] = {}
     for method in methods:
         for limit in method.limits:
-            owners.setdefault((_name(method, limit), limit.value), []).append(method.place)
+            owners.setdefault((_name(method, limit), limit.value), []).append(method.run.place)
     return [
         (name, value, style.method_color(places[0]) if len(places) == 1 else style.INK)
         for (name, value), places in owners.items()

@@ -21,7 +21,7 @@ _BETWEEN, _BELOW = 0.05, 0.2
 
 
 def profiles_figure(
-    found: Sequence[Profile], objective: str, method: Method, index: int, aspect: float
+    found: Sequence[Profile], objective: str, method: Method, color: int, aspect: float
 ) -> PlotlyFigure:
     """Small panels with one axis for the objective, which is logarithmic where it spans a decade.
 
@@ -33,8 +33,8 @@ def profiles_figure(
         Key of `navcore.quantities.QUANTITIES`.
     method : Method
         Whose parameters they are.
-    index : int
-        Of the method.
+    color : int
+        Place of the method's colour.
     aspect : float
         Height / width of the figure.
     """
@@ -69,11 +69,11 @@ def profiles_figure(
         ) | ({"matches": "y"} if place else {})
         where = {"xaxis": f"x{name}", "yaxis": f"y{name}", "showlegend": False}
         curve = {"x": packed(np.array(one.values)), "y": packed(np.array(one.found) / quantity.size)}
-        data.append(style.lines(method.name, index) | curve | where)
+        data.append(style.lines(method.name, color) | curve | where)
         if one.now is not None:
             dot = {"x": [one.now[0]], "y": [one.now[1] / quantity.size]}
             edge = {"color": "white", "width": 1.5}
-            data.append(style.marks(method.name, index, "circle", 11, edge) | dot | where)
+            data.append(style.marks(method.name, color, "circle", 11, edge) | dot | where)
     layout = style.layout(
         meta={"aspect": aspect}, margin=_MARGIN, showlegend=False, hovermode="closest", **axes
     )

@@ -117,7 +117,8 @@ class TuneView(PlotlyView):
         known = self._profiles.beside(task)
         if not known:
             return PlotlyFigure()
-        return profiles_figure(known, task.objective, scenario.method[index], index, self.aspect)
+        color = found.run.methods[index].place
+        return profiles_figure(known, task.objective, scenario.method[index], color, self.aspect)
 
     def picture(self, found: Shown) -> PlotlyFigure:
         """Make the picture; a figure without anything while there are no curves, or a proposal."""

@@ -23,7 +23,7 @@ from navcore.engine.drivers.common import (
 )
 from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
-from navcore.engine.run import MethodRun, Run, Status
+from navcore.engine.run import MethodRun, Run, Status, in_places
 from navcore.foundation.text import Text
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
@@ -115,7 +115,7 @@ def run_methods(
     steps = output_steps(env.steps, scenario.run.step_s, scenario.run.output_step_s)
     return Run(
         scenario=scenario,
-        methods=methods,
+        methods=in_places(methods),
         t_s=steps * scenario.run.step_s,
         truth=env.truth_half.at(2 * steps),
         warnings=env.warnings,

@@ -22,7 +22,7 @@ from navcore.engine.drivers.common import (
     stability_of,
 )
 from navcore.engine.drivers.kalman import filtered_strapdown, own_sigma
-from navcore.engine.run import MethodRun, Run, Status
+from navcore.engine.run import MethodRun, Run, Status, in_places
 from navcore.engine.strapdown_environment import StrapdownEnvironment, strapdown_environment
 from navcore.mechanization.recorder import output_steps
 from navcore.mechanization.strapdown import Settings, StrapdownRun, start_run, velocity_reference
@@ -86,7 +86,7 @@ def run_methods(
     methods = zip(scenario.method, started, strict=True)
     return Run(
         scenario=scenario,
-        methods=tuple(_finish(scenario, env, method, *run) for method, run in methods),
+        methods=in_places(_finish(scenario, env, method, *run) for method, run in methods),
         t_s=rows * rates.record_step_s,
         truth=env.truth.at(rows),
         warnings=env.warnings,
