@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 SHARED_PREFIX = "share-"
 _RANDOM = r"[A-Za-z0-9_-]{24}"
 _SHARED = re.compile(rf"{SHARED_PREFIX}{_RANDOM}")
+_LINK = re.compile(rf"{SHARED_PREFIX}{_RANDOM}(?![A-Za-z0-9_-])")
 _COPY = re.compile(rf"({SHARED_PREFIX}{_RANDOM})-{_RANDOM}")
 
 
@@ -30,6 +31,19 @@ def new_shared_id() -> str:
 def is_shared(id: str) -> bool:
     """Whether it is the id of a shared state: it is never worked on itself."""
     return _SHARED.fullmatch(id) is not None
+
+
+def shared_in(text: str) -> str | None:
+    """Id of the shared state that an address names; None where it names none, or a copy of one.
+
+    Examples
+    --------
+    >>> link = f"https://bench.example/s/{new_shared_id()}/?tab=Compare"
+    >>> shared_in(link) in link, shared_in(f"/s/{SessionIds().new_copy(new_shared_id())}/")
+    (True, None)
+    """
+    match = _LINK.search(text)
+    return None if match is None else match.group()
 
 
 def copied_from(id: str) -> str | None:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, TypeAdapter
 
@@ -14,6 +14,9 @@ from navcore.foundation.notation import symbol
 from navcore.foundation.parameters import sharing
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    from schuler_bench.session.pins import Pin
 
 MOST_STEPS = 200
 DRAG_S = 1.0
@@ -37,12 +40,15 @@ class State:
         Method that the controls edited.
     opened : Scenario
         As it was opened, before all editing.
+    taken : tuple of Pin
+        Pins that were taken from links.
     """
 
     scenario: Scenario
     origin: str
     selected: int
     opened: Scenario
+    taken: tuple[Pin, ...] = ()
 
 
 class History:
@@ -109,7 +115,7 @@ class History:
         if state == before:
             return
         fields = changed_fields(before.scenario, state.scenario)
-        if not fields and state.origin == before.origin:
+        if not fields and (state.origin, state.taken) == (before.origin, before.taken):
             self._replace(state)  # another method was selected: no step of its own
             return
         # Two hundred scenarios that differ in a field each are kept as what differs.
@@ -210,6 +216,8 @@ def change_name(before: State, after: State) -> str:
     before, after : State
         On both sides of the change.
     """
+    if after.taken != before.taken:
+        return Text("take pins from a link")
     if after.origin != before.origin:
         return Text("open {origin}", origin=after.origin)
     count = len(after.scenario.method) - len(before.scenario.method)

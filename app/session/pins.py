@@ -2,7 +2,7 @@
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,6 +18,8 @@ from schuler_bench.jobs.worker import Watch, Worker
 
 MOST_PINS = 8
 LONGEST_NAME, LONGEST_NOTE = 40, 400
+Kept = list[dict[str, Any]]
+"""Pins as they are in a file."""
 COLORS: dict[str, str] = {
     Text("black"): "#1F2933",
     Text("magenta"): "#C2185B",
@@ -140,17 +142,48 @@ class Pins:
             There are `MOST_PINS` already.
         """
         with self._lock:
-            if len(self._pins) >= MOST_PINS:
-                allowed = Text("at most {most_pins}: remove one first", most_pins=MOST_PINS)
-                raise InputError([Fault("pins", "", len(self._pins), allowed)])
+            _refuse_too_many(len(self._pins) + 1)
             id, self._next = self._next, self._next + 1
-            taken = {pin.color for pin in self._pins}
-            color = next((color for color in COLORS if color not in taken), next(iter(COLORS)))
+            color = _free_color(self._pins)
             title = _short(name) or _made_name(id)
             pin = Pin(id, title, "", color, True, run.scenario, origin, few_rows(run), method)
             self._pins = (*self._pins, pin)
         self._changed()
         return pin
+
+    def take(self, kept: Kept) -> tuple[Pin, ...]:
+        """Add the pins of another session, as its `to_json` gave them, but those that are here already.
+
+        Raises
+        ------
+        InputError
+            There would be more than `MOST_PINS`.
+        ValueError, TypeError, KeyError
+            It is not what `to_json` gives.
+        """
+        with self._lock:
+            known, fresh = [_content(pin) for pin in self._pins], list[Pin]()
+            for entry in kept:
+                pin = _read(self._next + len(fresh), entry)
+                if _content(pin) not in known:
+                    color = _free_color((*self._pins, *fresh), first=pin.color)
+                    fresh.append(replace(pin, color=color))
+            _refuse_too_many(len(self._pins) + len(fresh))
+            self._next += len(fresh)
+        self.exchange((), tuple(fresh))
+        return tuple(fresh)
+
+    def exchange(self, old: Collection[Pin], new: Collection[Pin]) -> None:
+        """Take some pins away, and put others at the end; their runs are computed in the background."""
+        gone = {pin.id for pin in old if pin not in new}
+        self._exchange(
+            lambda pins: (
+                *(pin for pin in pins if pin.id not in gone),
+                *(pin for pin in new if pin not in old),
+            )
+        )
+        if any(pin.run is None for pin in self._pins):
+            self._worker.submit(0)
 
     def change(self, id: int, **changes: Any) -> None:
         """Give a pin another name, note, colour, or show or hide it; unknown ids do nothing.
@@ -198,11 +231,11 @@ class Pins:
 
     # ------------------------------------------------------------ kept in a file
 
-    def to_json(self) -> list[dict[str, Any]]:
+    def to_json(self) -> Kept:
         """Form of the pins in a file: everything but the runs, which are computed again."""
         return [
             {
-                "name": pin.name,
+                "name": "" if pin.unnamed else pin.name,
                 "note": pin.note,
                 "color": pin.color,
                 "shown": pin.shown,
@@ -248,6 +281,22 @@ class Pins:
                 continue
             if run.status != "stopped":
                 self.change(pin.id, run=few_rows(run))
+
+
+def _refuse_too_many(count: int) -> None:
+    if count > MOST_PINS:
+        allowed = Text("at most {most_pins}: remove one first", most_pins=MOST_PINS)
+        raise InputError([Fault("pins", "", count, allowed)])
+
+
+def _free_color(pins: Sequence[Pin], first: str = next(iter(COLORS))) -> str:
+    taken = {pin.color for pin in pins}
+    return next((color for color in (first, *COLORS) if color not in taken), first)
+
+
+def _content(pin: Pin) -> tuple[object, ...]:
+    """What makes it another pin for a reader: neither its id nor how it looks."""
+    return "" if pin.unnamed else pin.name, pin.note, pin.scenario, pin.method
 
 
 def _read(id: int, entry: Any) -> Pin:

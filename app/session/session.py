@@ -20,7 +20,7 @@ from schuler_bench.jobs.words import for_a_page
 from schuler_bench.jobs.worker import Watch, Worker
 from schuler_bench.session.display import Display
 from schuler_bench.session.history import History, State, first_editable
-from schuler_bench.session.pins import Pins
+from schuler_bench.session.pins import Kept, Pins
 from schuler_bench.session.uploads import Uploads
 from schuler_bench.session.view import View
 
@@ -45,20 +45,16 @@ class Session:
 
     Attributes
     ----------
-    scenario : Scenario
-        As edited.
-    origin : str
-        Preset, or "uploaded".
-    opened : Scenario
-        As it was opened: what reset goes back to.
-    selected : int
-        Method that the controls edit.
+    scenario, origin, opened, selected, taken
+        As of the present `schuler_bench.session.history.State`.
     on_answer : callable
         ``on_answer(seconds)`` after every run that is shown: since it was asked for.
     on_change : callable
         ``on_change()`` after every change that is to outlive the server.
     share : callable
         ``share()`` makes a copy for others and gives its id; OSError when there is no room.
+    shared_pins : callable
+        ``shared_pins(address)`` gives those of a shared state, as of `Pins.to_json`; None: no such state.
     restored : bool
         It was kept, or is a copy of one that was: not a new visitor's.
     presenter : View or None
@@ -100,6 +96,7 @@ class Session:
         self.on_change: Callable[[], None] = lambda: None
         self.on_answer: Callable[[float], None] = lambda _: None
         self.share: Callable[[], str] = lambda: self.id
+        self.shared_pins: Callable[[str], Kept | None] = lambda _: None
         self.presenter: View | None = None
         self.restored = False
         self.run: Run | None = None
@@ -174,7 +171,7 @@ class Session:
     @property
     def state(self) -> State:
         """Return the state that undo brings back."""
-        return State(self.scenario, self.origin, self.selected, self.opened)
+        return State(self.scenario, self.origin, self.selected, self.opened, self.taken)
 
     def change(
         self,
@@ -201,7 +198,8 @@ class Session:
             opened = self.opened if origin is None else scenario
             if origin is not None:
                 name = name or Text("open {origin}", origin=origin)
-            self.history.push(State(scenario, origin or self.origin, self.selected, opened), name, gesture)
+            state = State(scenario, origin or self.origin, self.selected, opened, self.taken)
+            self.history.push(state, name, gesture)
             # The history's own: it shares with the state before what has not changed.
             self._go_to(self.history.state, by, opens=origin is not None)
             return True
@@ -238,6 +236,7 @@ class Session:
         with self.lock:
             origin, state = self.origin, step()
             if state is not None:
+                self.pins.exchange(self.taken, state.taken)
                 self._go_to(state, None, opens=state.origin != origin)
             return state is not None
 
@@ -253,8 +252,8 @@ class Session:
         self._tell(lambda view: view.run_waits() if self.outdated else view.run_ended())
 
     def _take(self, state: State) -> None:
-        self.scenario, self.origin = state.scenario, state.origin
-        self.selected, self.opened, self.outdated = state.selected, state.opened, True
+        self.scenario, self.origin, self.selected = state.scenario, state.origin, state.selected
+        self.opened, self.taken, self.outdated = state.opened, state.taken, True
         self.display = self.display.knowing(state.scenario)
 
     def _show_state(self, state: State, by: object) -> None:

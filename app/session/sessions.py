@@ -17,7 +17,7 @@ from pydantic import ValidationError
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
-from schuler_bench.http.ids import copied_from, log_name, new_shared_id
+from schuler_bench.http.ids import copied_from, log_name, new_shared_id, shared_in
 from schuler_bench.session.display import Display
 from schuler_bench.session.folder import link_files, remove_files
 from schuler_bench.session.history import History, State
@@ -148,6 +148,7 @@ class Sessions:
         session.on_answer = self._on_answer
         session.on_change = partial(self._changed, session)
         session.share = partial(self._share, session)
+        session.shared_pins = partial(self._shared_pins, session)
         return session
 
     def _kept(self, id: str) -> Document | None:
@@ -182,6 +183,11 @@ class Sessions:
                 old, _ = self._shared.popitem(last=False)
                 remove_files(self._files_folder(old))
         return id
+
+    def _shared_pins(self, session: Session, address: str) -> list[Document] | None:
+        id = shared_in(address)
+        document = None if id is None else self._kept(id)
+        return None if document is None else _pins(session, document)
 
     def _files_folder(self, id: str) -> Path:
         if self._store is not None:
@@ -299,7 +305,7 @@ def restore(session: Session, document: Document) -> None:
     """
     if document["schema"] != SCHEMA:
         raise ValueError(f"schema {document['schema']!r}, not {SCHEMA}")
-    names = {name: upload.path for name, upload in session.uploads.files.items()}
+    names = _recordings(session)
     steps, at = list(document["steps"]), int(document["at"])
     scenarios: dict[int, Scenario] = {}
 
@@ -323,10 +329,6 @@ def restore(session: Session, document: Document) -> None:
     def history() -> History:
         return History.of([(state(step), str(step.get("name", ""))[:200]) for step in steps], at)
 
-    def pins() -> list[Document]:
-        kept = document["pins"]
-        return [pin | {"scenario": _scenario(pin["scenario"], names).canonical()} for pin in kept]
-
     def study() -> tuple[str, str]:
         name, text = document.get("study", ("", ""))
         return str(name)[:_LONGEST_NAME], str(text)[:LARGEST_TEXT]
@@ -340,8 +342,18 @@ def restore(session: Session, document: Document) -> None:
             Display(),
         ),
     )
-    part("pins", lambda: session.pins.from_json(pins()), None)
+    part("pins", lambda: session.pins.from_json(_pins(session, document)), None)
     session.study_file = part("study", study, ("", ""))
+
+
+def _pins(session: Session, document: Document) -> list[Document]:
+    """Pins of a document, their recordings those of the session."""
+    names = _recordings(session)
+    return [pin | {"scenario": _scenario(pin["scenario"], names).canonical()} for pin in document["pins"]]
+
+
+def _recordings(session: Session) -> dict[str, Path]:
+    return {name: upload.path for name, upload in session.uploads.files.items()}
 
 
 def _scenario(data: Any, names: Mapping[str, Path]) -> Scenario:

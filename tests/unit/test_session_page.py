@@ -7,8 +7,10 @@ from html import unescape
 
 import pytest
 
+from navcore.design.dominance import why
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
+from navcore.quantities import POSITION
 from navcore.scenario.file import load, scenario_hash
 from navcore.scenario.model import Scenario
 from schuler_bench.languages.wording import wording
@@ -17,6 +19,7 @@ from schuler_bench.session.display import Display
 from schuler_bench.session.pins import Pins
 from schuler_bench.session.shown import Shown
 from schuler_bench.views.appearance.document import Session, command, document
+from schuler_bench.views.metrics.view import cause_text
 from tests.limits import under
 from tests.unit.figures_runs import THREE, UNSTABLE, run_of, static_run
 
@@ -61,6 +64,14 @@ def test_the_page_holds_numbers_verdicts_pins_warnings_plots_and_scenario() -> N
     assert re.findall(r'<img[^>]* data-picture="(.*?)"', html) == ["0", "1"]
     scenario = text["Scenario"]
     assert Scenario.parse(tomllib.loads(scenario[scenario.index("schema = ") :])) == run.scenario
+
+
+def test_each_pin_says_what_dominates_it() -> None:
+    text = sections(document(session_of(run_of(method=THREE), "before the change"), ()))["Pins"]
+    for name, run in (("present run", run_of(method=THREE)), ("before the change", static_run())):
+        result = why(run)
+        words = [cause_text(cause, result) for cause in result.methods[0][1] if cause.quantity is POSITION]
+        assert words and re.search(rf"{name}\s*: {re.escape(words[0])}", text), (name, words, text)
 
 
 def test_what_there_is_none_of_is_said() -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.version import __version__
 from navcore.scenario.file import load, presets, to_toml
@@ -19,15 +20,15 @@ from schuler_bench.plots import table
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.plots.saved import WIDTH_PX, plotly_csv, time_csv, time_figure
 from schuler_bench.session.pins import Pin
-from schuler_bench.session.shown import Shown, shown, titled, window_of
+from schuler_bench.session.shown import Shown, edited, shown, titled, window_of
 from schuler_bench.session.uploads import with_plain_names
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import Figures, Frame, PictureView
-from schuler_bench.views.compare.table import lines_of, pins_html
+from schuler_bench.views.compare.table import PRESENT, lines_of, pins_html
 from schuler_bench.views.metrics.table import metrics_html, system_html
-from schuler_bench.views.metrics.view import warnings_html
+from schuler_bench.views.metrics.view import warnings_html, why_line
 from schuler_bench.views.requirements.table import requirements_html
 
 FORMATS = ("CSV", "SVG", "PNG")
@@ -315,13 +316,24 @@ def _pins(session: Session) -> str:
         return _section(Text("Pins"), Text("<p>No run is pinned.</p>"))
     lines = lines_of(window_of(run, display), run, session.now.selected, pins)
     by = None if baseline is None else baseline.id
+    table = pins_html(lines, display.pins_by, by, buttons=False)
+    reasons = [_reasons(run, session.now.selected, lines[0].color, PRESENT)]
+    reasons += [_reasons(pin.run, edited(pin), pin.hex, pin.name) for pin in pins if pin.run is not None]
     return _section(
         Text("Pins"),
-        Text(
-            '<div class="table">{pins}</div>',
-            pins=pins_html(lines, display.pins_by, by, buttons=False),
-        ),
+        Text('<div class="table">{table}</div>', table=table),
+        Text("<h3>Why</h3>"),
+        *reasons,
     )
+
+
+def _reasons(run: Run, place: int, color: str, name: str) -> str:
+    """What dominates the errors of the method that is or was edited: a tenth of a second each."""
+    from navcore.design.dominance import why
+
+    result = why(replace(run, methods=run.methods[: place + 1][-1:]))
+    ((_, causes),) = result.methods
+    return why_line(result, causes, name, color)
 
 
 def _scenario(session: Session) -> str:

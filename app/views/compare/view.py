@@ -4,13 +4,14 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.quantities import STATISTICS
 from schuler_bench.plots import style
 from schuler_bench.session.history import first_editable
 from schuler_bench.session.pins import COLORS, MOST_PINS, Pin
 from schuler_bench.session.shown import Shown, titled, window_of
+from schuler_bench.session.taking import take_pins
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
 from schuler_bench.views.compare.table import COLUMNS, lines_of, lines_without_pins, pins_html
@@ -24,7 +25,10 @@ CHOSEN, NAME, NOTE, COLOR, SHOWN = (
     Text("pin shown"),
 )
 BASELINE, DELTA = Text("compare with"), Text("Δ of")
+LINK, TAKE = Text("link with pins"), Text("Take the pins from a link")
 BACK, REMOVE = Text("Go back to this pin"), Text("Remove this pin")
+_NO_LINK = Text("expected a link that Share made on this server")
+_HERE = Text("all of them are here already")
 _FIRST = Text("the first pin")
 _STATISTICS = {word: statistic for statistic, word in STATISTICS.items()}
 _EMPTY = Text(
@@ -58,6 +62,7 @@ class CompareView(PictureView[str]):
             pin = gui.add_button(PIN, hint=Text("Keep the present run as a baseline. Key: P."), order=1)
             flip = gui.add_button(
                 FLIP,
+                color="gray",
                 hint=Text("All plots show the baseline in the place of this run. Key: B."),
                 order=2,
             )
@@ -74,6 +79,10 @@ class CompareView(PictureView[str]):
                 hint=Text("Number of each error that the table compares: rms, largest, last."),
             )
             self._list = gui.add_html("", order=5)
+            made = Text("Made with Share, by a reviewer say. Your scenario and pins stay.")
+            self._link = gui.add_text(LINK, "", order=5.3, hint=made)
+            beside = Text("Its pins stand beside yours; undo takes them back.")
+            take = gui.add_button(TAKE, order=5.6, color="gray", hint=beside)
             self._chosen: Any = gui.add_dropdown(
                 CHOSEN, ("",), order=6, hint=Text("Pin that is edited here.")
             )
@@ -82,7 +91,10 @@ class CompareView(PictureView[str]):
             self._shown = gui.add_checkbox(SHOWN, True, order=9, hint=Text("Lay it over every plot."))
             self._note = gui.add_text(NOTE, "", order=10, hint=Text("What there is to say of it."))
             back = gui.add_button(
-                BACK, order=11, hint=Text("Its scenario becomes the present one; this can be undone.")
+                BACK,
+                order=11,
+                color="gray",
+                hint=Text("Its scenario becomes the present one; this can be undone."),
             )
             remove = gui.add_button(
                 REMOVE, order=12, color="orange", hint=Text("Its curves go from every plot.")
@@ -92,6 +104,7 @@ class CompareView(PictureView[str]):
         flip.on_click(lambda _: self._flip())
         back.on_click(lambda _: self._with_chosen(self._go_back))
         remove.on_click(lambda _: self._with_chosen(lambda chosen: pins.remove(chosen.id)))
+        take.on_click(lambda _: self._take())
         self._chosen.on_update(if_user(self._show))
         show = self.frame.show
         self._baseline.on_update(if_user(lambda: show(baseline=self._options.get(self._baseline.value))))
@@ -172,6 +185,17 @@ class CompareView(PictureView[str]):
                 )
             ]
             notices.tell(client, Text("Not pinned"), lines, "warning")
+
+    def _take(self) -> None:
+        """Take the pins of the state that was shared under the link."""
+        client, link = self.frame.client, self._link.value
+        with notices.told(client, Text("No pin was taken"), self.frame.refresh):
+            count = take_pins(self.session, link)
+            if count is None:
+                raise InputError(Fault("", "link", link[:80], _NO_LINK))
+            self._link.value = ""
+            words = Text.plural("{count} pin", "{count} pins", count=count) if count else _HERE
+            notices.tell(client, Text("Pins from a link"), [words], "info")
 
     def _flip(self) -> None:
         """Show the baseline in the place of the present run, or the present run again."""

@@ -83,18 +83,23 @@ def _told(causes: tuple[Cause, ...], result: Why) -> str:
     return _words(causes, result, POSITION, TILT) or Text("neither position error nor tilt")
 
 
+def why_line(result: Why, causes: tuple[Cause, ...], name: str, color: str) -> str:
+    """Return what dominates the errors of one method, behind a name in its colour."""
+    return Text(
+        '<div title="{words:html}"><span class="sb-swatch" style="background:{color}">'
+        "</span><b>{name:html}</b>: {told:html}.</div>",
+        words=_words(causes, result, HEADING),
+        color=color,
+        name=name,
+        told=_told(causes, result),
+    )
+
+
 def _lines(result: Why, run: Run) -> str:
     rows = Text.joined(
         "",
         (
-            Text(
-                '<div title="{words:html}"><span class="sb-swatch" style="background:{method_color}">'
-                "</span><b>{name:html}</b>: {told:html}.</div>",
-                words=_words(causes, result, HEADING),
-                method_color=style.method_color(method.place),
-                name=name,
-                told=_told(causes, result),
-            )
+            why_line(result, causes, name, style.method_color(method.place))
             for method, (name, causes) in zip(run.methods, result.methods, strict=True)
         ),
     )

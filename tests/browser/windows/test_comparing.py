@@ -6,6 +6,7 @@ from itertools import combinations
 import pytest
 
 from schuler_bench.editing import edits
+from schuler_bench.http.ids import SessionIds
 from schuler_bench.session.pins import MOST_PINS
 from schuler_bench.shell.layout import layout_for
 from tests.browser.driver import SIZES, Bench
@@ -110,6 +111,24 @@ def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None
     see(pinned, pinned.button("Remove this pin")).click()
     page.locator(".sb-no-pins").wait_for()
     assert len(pinned.session.pins.all) == 0
+
+
+def test_the_pins_of_a_link_are_taken_and_given_back(pinned: Bench) -> None:
+    page, session, (pin,) = pinned.page, pinned.session, pinned.session.pins.all
+    assert pinned.sessions is not None and session.run is not None
+    theirs = pinned.sessions.get(SessionIds().new_copy(session.share()))
+    theirs.pins.change(theirs.pins.add(session.run, "").id, note="calmer at sea")
+    row = "xpath=ancestor::*[contains(@class, 'mantine-Flex-root')][1]//input"
+    link = page.locator(f'label:text-is("{pinned.said("link with pins")}")').locator(row)
+    for text, told in (("elsewhere", "No pin was taken"), (f"/s/{theirs.share()}/", "Pins from a link")):
+        link.fill(text)
+        see(pinned, pinned.button("Take the pins from a link")).click()
+        pinned.notice(told)
+    see(pinned, page.locator(".sb-pins tbody tr", has_text="calmer at sea"))
+    assert session.pins.all[0] == pin and len(session.pins.all) == 2
+    session.undo()
+    page.locator(".sb-pins", has_text="calmer at sea").wait_for(state="detached")
+    assert session.pins.all == (pin,)
 
 
 def test_pins_stand_in_one_table_that_sorts_and_judges(pinned: Bench) -> None:
