@@ -178,8 +178,13 @@ def test_a_window_that_is_too_small_says_so(another: Another) -> None:
     told = bench.page.locator("#sb-too-small")
     told.wait_for()
     assert "700 px" in told.inner_text() and box(told) == {"x": 0, "y": 0, "width": 390, "height": 844}
-    bench.page.goto(f"{bench.url}?view=errors")
+    links = told.get_by_role("link").all()
+    assert len(links) == 3 and all(box(link)["height"] >= 44 for link in links), "for a finger"
+    session = bench.page.url.split("?")[0]
+    told.get_by_role("link", name="Errors").click()
+    bench.page.locator("[data-sb-alone] .uplot").first.wait_for()
     assert not told.is_visible(), "one view alone fits any window"
+    assert bench.page.url.split("?")[0] == session and bench.page.locator("#sb-embed").count() == 0
 
 
 def test_what_is_scrolled_away_does_not_show_through_the_tabs(moving: Bench) -> None:

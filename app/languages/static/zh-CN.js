@@ -69,6 +69,8 @@ window.schuler.words = {
   "Width of the 3D view": "三维视图宽度",
   "Height of the upper plots": "上方图的高度",
   "This page needs a window at least 700 px wide: open it on a tablet or a computer.": "本页需要至少 700 px 宽的窗口：请在平板电脑或计算机上打开。",
+  "Here it can show one view of this session alone:": "在此可单独显示本会话的一个视图：",
+  "Map": "地图",
   "All commands": "全部命令",
   "They act while no text box has the focus: Enter or Esc leaves one. Esc closes what is open.": "焦点不在文本框时起作用：Enter 或 Esc 离开文本框。Esc 关闭已打开的内容。",
   "Link to this state": "当前状态的链接",

@@ -44,9 +44,9 @@
   }
 
   // One click copies what another page needs to show this view: a frame with a copy of the present state. In a frame it
-  // is not offered.
+  // is not offered, nor on a phone, where it covers what is seen.
   function offer() {
-    if (window.top !== window || document.getElementById("sb-embed") !== null) return;
+    if (window.top !== window || innerWidth < 700 || document.getElementById("sb-embed") !== null) return;
     const title = "Copy the HTML of a frame that shows this view as it is now";
     const button = window.schuler.element("button", "Embed", { id: "sb-embed", class: "sb-do", title });
     button.addEventListener("click", () => window.schuler.command("share-embed"));

@@ -80,7 +80,7 @@
     line.value = text;
     line.setAttribute("aria-label", `${label?.textContent ?? ""}: value with its unit, Enter takes it over`);
     line.style.cssText = `position:fixed;z-index:400;left:${at.left}px;top:${at.top}px;width:${Math.max(at.width, 96)}px;` +
-      `height:${at.height}px;box-sizing:border-box;padding:0 6px;border:2px solid #1c7ed6;border-radius:4px;font:12px system-ui`;
+      `height:${at.height}px;box-sizing:border-box;padding:0 6px;border:2px solid #1c7ed6;border-radius:4px;font:12px var(--sb-font)`;
     let open = true; // taking it off the page is a blur, too
     const close = () => {
       if (open) {

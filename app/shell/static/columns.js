@@ -135,11 +135,23 @@
 
   // By itself: on a phone viser folds the panel in which our style sheet comes.
 
-  const small = document.createElement("p");
+  const small = document.createElement("div");
   small.id = "sb-too-small";
-  small.textContent = "This page needs a window at least 700 px wide: open it on a tablet or a computer.";
-  small.style.cssText = "position:fixed;z-index:260;inset:0;place-items:center;margin:0;padding:24px;text-align:center;" +
-    "background:#fff;color:#243b53;font:18px/1.4 system-ui,sans-serif";
+  small.style.cssText = "position:fixed;z-index:260;inset:0;place-content:center;gap:18px;padding:24px;text-align:center;" +
+    "background:#fff;color:#243b53;font:18px/1.4 var(--sb-font,sans-serif)";
+  const why = document.createElement("div");
+  why.textContent = "This page needs a window at least 700 px wide: open it on a tablet or a computer.";
+  const how = document.createElement("div");
+  how.textContent = "Here it can show one view of this session alone:";
+  small.append(why, how);
+  for (const [name, title] of Object.entries({ errors: "Errors", metrics: "Metrics", map: "Map" })) {
+    const view = new URL(location.href);
+    view.searchParams.set("view", name);
+    const link = document.createElement("a");
+    Object.assign(link, { textContent: title, href: view.href });
+    link.style.cssText = "padding:10px;border:1px solid #b8c4d0;border-radius:6px;color:#1864ab;text-decoration:none";
+    small.append(link);
+  }
   const narrow = matchMedia("(max-width: 699px)");
   const tell = () => (small.style.display = narrow.matches ? "grid" : "none");
   narrow.addEventListener("change", tell);

@@ -4,7 +4,7 @@
   const veil = Object.assign(document.createElement("div"), { id: "sb-veil", textContent: "Schuler Bench is opening …" });
   veil.setAttribute("role", "status");
   veil.style.cssText = "position:fixed;inset:0;z-index:250;display:grid;place-items:center;background:#fff;color:#52667a;" +
-    "font:15px system-ui,sans-serif";
+    "font:15px var(--sb-font,sans-serif)";
   document.documentElement.append(veil);
   const timer = setInterval(() => {
     // Where one view is to stand alone, alone.js removes it.

@@ -19,6 +19,7 @@ from schuler_bench.editing.edits import files_of
 from schuler_bench.plots import table
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.plots.saved import WIDTH_PX, plotly_csv, time_csv, time_figure
+from schuler_bench.plots.style import FONT_FAMILY
 from schuler_bench.session.pins import Pin
 from schuler_bench.session.shown import Shown, edited, shown, titled, window_of
 from schuler_bench.session.uploads import with_plain_names
@@ -173,7 +174,8 @@ _ABREAST = 3
 """Methods beside each other in a table, so that it fits on paper."""
 _STATIC = Path(__file__).parent / "static"
 _PAGE = Template((_STATIC / "document.html").read_text(encoding="utf-8"))
-_CSS = table.CSS + (_STATIC / "document.css").read_text(encoding="utf-8")
+_FONT = f":root{{--sb-font:{FONT_FAMILY}}}"
+_CSS = _FONT + table.CSS + (_STATIC / "document.css").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True)
