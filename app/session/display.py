@@ -80,6 +80,9 @@ class Display(BaseModel):
         Colours of the whole page; "opposite": dark where the system is light, and light where it is dark.
     size : str
         Of type and lines; "presentation": readable from the back of a room, with few controls.
+    large : str
+        What has the most room: the plots, or the 3D view while one presents or a lesson is about it; a page
+        may still let both change places.
     budget : str
         What the tab "Design" shows: the methods that meet the limits, or the error budget, of the steady
         state of one level channel or of the whole run.
@@ -142,6 +145,7 @@ class Display(BaseModel):
     flipped: bool = False
     theme: Literal["system", "opposite", "light", "dark"] = "system"
     size: Literal["normal", "presentation"] = "normal"
+    large: Literal["plots", "view"] = "plots"
     budget: Literal["limits", "steady", "run"] = "limits"
     design_over: Literal["scenario", "study"] = "scenario"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"

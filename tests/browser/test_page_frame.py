@@ -172,6 +172,17 @@ def test_menu_description_and_search_open_from_the_bar(moving: Bench) -> None:
         settings.wait_for(state=state)
 
 
+def test_who_presents_and_a_lesson_give_the_3d_view_the_room_of_the_plots(moving: Bench) -> None:
+    width = "() => document.querySelector('[data-dock-region=\"right\"]').getBoundingClientRect().width"
+    least = moving.page.evaluate(width)
+    for large in (True, False):
+        moving.button("Present").click()
+        moving.page.wait_for_function(f"large => large === ({width})() < {least / 2}", arg=large)
+    for lesson, large in (("5-foucault-beat", "view"), ("5-foucault-beat", "plots")):
+        moving.session.show(None, lesson=lesson, large=large)
+        moving.page.wait_for_function(f"large => large === ({width})() < {least / 2}", arg=large == "view")
+
+
 def test_a_window_that_is_too_small_says_so(another: Another) -> None:
     bench = another(390, 844)
     bench.page.goto(f"{bench.url}?start=no")

@@ -72,6 +72,10 @@
     find("loop").addEventListener("click", () => window.schuler.command("loop", now.loop ? "off" : "on"));
     // After a click by the mouse the space bar plays; whoever goes by the keyboard keeps the focus.
     stage.addEventListener("click", (event) => event.detail > 0 && event.target.closest("button")?.blur());
+    // While one presents, or as a lesson asks: what a visitor has folded is unfolded, and not folded again.
+    window.schuler.act("large", (mode) => {
+      if ((mode === "view") !== (window.schuler.mode?.() === "view")) window.schuler.setMode?.("view");
+    });
     for (const button of stage.querySelectorAll("[data-mode]")) {
       button.addEventListener("click", () => window.schuler.setMode(button.dataset.mode)); // columns.js
     }

@@ -225,7 +225,7 @@ class SceneView(View):
         self._scene = SceneDrawer(frame.client.scene)
         self._cameras = Cameras(frame.client.camera)
         self._run: Run | None = None
-        self._count, self._closed = 0, False
+        self._count, self._closed, self._large = 0, False, "plots"
         self.playback = Playback(self._show)
 
     def build(self, tab: Tab) -> None:
@@ -247,6 +247,12 @@ class SceneView(View):
         """Show the computed ship and the readout of the method that is edited now."""
         if self._run is not None and self._scene.select(self.session.selected):
             self._tell(self.playback.state)
+
+    def follow_display(self) -> None:
+        """Let 3D view and plots change places where the session has come to want it (playback.js)."""
+        before, self._large = self._large, self.session.display.large
+        if before != self._large:
+            self.frame.commands.ask_page("large", self._large)
 
     def draw(self, found: Shown) -> None:
         """Show a run at the time that was shown before."""
