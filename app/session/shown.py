@@ -106,7 +106,7 @@ def laid(pins: Sequence[Pin], scenario: Scenario) -> tuple[Pin, ...]:
     """Give each pin the name of what differs from a scenario, and only the methods that a picture needs.
 
     These are the method that was edited when the run was pinned, and those that are others now. A name that
-    the user gave is kept.
+    the user gave is kept. Pins of a scenario with another title are left out: their curves say nothing here.
 
     Parameters
     ----------
@@ -115,7 +115,8 @@ def laid(pins: Sequence[Pin], scenario: Scenario) -> tuple[Pin, ...]:
     scenario : Scenario
         What they are laid over.
     """
-    return tuple(_with_needed(pin, scenario) for pin in titled(pins, scenario))
+    alike = [pin for pin in pins if pin.scenario.title == scenario.title]
+    return tuple(_with_needed(pin, scenario) for pin in titled(alike, scenario))
 
 
 def titled(pins: Sequence[Pin], scenario: Scenario) -> tuple[Pin, ...]:

@@ -18,7 +18,8 @@ from schuler_bench.plots.uplot import stack_heights
 from schuler_bench.session.display import Display
 from schuler_bench.session.shown import Shown
 from schuler_bench.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
-from schuler_bench.views.errors.view import error_curves, legend_html
+from schuler_bench.views.errors.view import error_curves, legend_html, moving
+from schuler_bench.views.learn.lessons import lessons
 from tests.unit.figures_runs import Pinned, diverging, run_of, static_run
 
 KEYS = ("phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position")
@@ -240,3 +241,13 @@ def test_the_difference_that_is_drawn_is_the_one_in_the_table(verified: Verifica
         drawn = [np.nanmax(np.abs(curve.values)) * difference.unit.si for curve in difference.curves]
         peaks = [differences[both.quantity].peak for differences in verified.differences]
         assert drawn == pytest.approx(peaks) and min(drawn) > 0.0
+
+
+def test_a_step_of_a_lesson_leaves_out_what_is_zero_throughout() -> None:
+    run = simulate(lessons()[0].scenario_of(0))
+    plots = error_curves(Shown(run, 1, Display())).plots
+    zero = [key for key, plot in plots.items() if not np.any(plot.curves[0].values)]
+    assert zero and list(moving(plots)) == [key for key in plots if key not in zero]
+    assert moving({key: plots[key] for key in zero}) == {key: plots[key] for key in zero}, (
+        "else nothing is seen"
+    )

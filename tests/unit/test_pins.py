@@ -10,6 +10,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from schuler_bench.jobs.rows import MOST_ROWS, few_rows
 from schuler_bench.session.pins import COLORS, LONGEST_NAME, MOST_PINS, Pins
+from schuler_bench.session.shown import laid
 from tests.unit.figures_runs import run_of, static_run
 
 
@@ -100,3 +101,9 @@ def test_what_is_no_list_of_pins_is_refused_and_changes_nothing(pins: Pins, wron
     with pytest.raises((ValueError, TypeError, KeyError)):
         pins.from_json(wrong)
     assert pins.all == (pin,)
+
+
+def test_a_pin_of_another_scenario_is_not_drawn_over_its_curves(pins: Pins) -> None:
+    pin, scenario = pins.add(static_run(), "preset"), static_run().scenario
+    assert [each.id for each in laid(pins.all, scenario)] == [pin.id]
+    assert laid(pins.all, scenario.model_copy(update={"title": "another"})) == ()

@@ -1,8 +1,10 @@
 """Tab "Errors": the error curves of a run, in small plots of all quantities or larger ones of a few."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
+
+import numpy as np
 
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
@@ -187,14 +189,16 @@ class ErrorsView(PictureView[ErrorCurves]):
         if group == VERIFICATION:
             return _verified_curves(found.verified, found.display, methods=methods)
         small = _SMALL.get(group)
-        return error_curves(found, small or GROUPS[group], small is not None, methods=methods)
+        curves = error_curves(found, small or GROUPS[group], small is not None, methods=methods)
+        return replace(curves, plots=moving(curves.plots)) if found.display.lesson else curves
 
     def show(self, picture: ErrorCurves) -> None:
         """Show the plots that are chosen, below their legend."""
         layout, plots = self.frame.layout(), list(picture.plots.values())
         room = room_px(layout)
         abreast = 2 if picture.two_abreast else 1
-        heights = [each for each in stack_heights(room, len(plots) // abreast) for _ in range(abreast)]
+        heights = [each for each in stack_heights(room, -(-len(plots) // abreast)) for _ in range(abreast)]
+        heights = heights[: len(plots)]
         self._legend.content = (_TWO if picture.two_abreast else "") + picture.legend
         self._stack.show(plots, heights, labelled=abreast, scale=layout.scale)
 
@@ -233,6 +237,15 @@ def error_curves(
     )
     legend = legend_html(found.run, None, found.pins, found.envelope, found.display, methods=methods)
     return ErrorCurves({key: plots[key] for key in keys}, legend, two_abreast)
+
+
+def moving(plots: dict[str, UplotFigure]) -> dict[str, UplotFigure]:
+    """Plots of a lesson's step: those without a curve that is not zero throughout are left out."""
+    return {
+        key: plot
+        for key, plot in plots.items()
+        if any(np.any(np.nan_to_num(curve.values)) for curve in plot.curves)
+    } or plots
 
 
 def _verified_curves(verified: Verified | None, display: Display, *, methods: bool = True) -> ErrorCurves:
