@@ -103,6 +103,8 @@ class UplotFigure:
         The y axis is logarithmic, from and to these powers of ten.
     bands : tuple of (int, int, str)
         Filled areas: places of the upper and the lower curve in ``curves``, colour.
+    period : float
+        The time axis has its ticks at multiples of it, in ``time_unit``; 0: at round times.
     """
 
     key: str
@@ -117,6 +119,7 @@ class UplotFigure:
     ticks: tuple[tuple[float, str], ...] = ()
     decades: tuple[int, int] | None = None
     bands: tuple[tuple[int, int, str], ...] = ()
+    period: float = 0.0
 
     @property
     def data(self) -> tuple[np.ndarray, ...]:
@@ -162,10 +165,10 @@ class UplotFigure:
             "gap": 3,
             "border": {"show": True, "stroke": style.REFERENCE, "width": 1},
         }
-        in_hours = self.time_unit.si == HOUR
+        round_times = _TIME_STEPS if self.time_unit.si == HOUR else _MINUTE_STEPS
         x = common | {
             "scale": "x",
-            "incrs": _TIME_STEPS if in_hours else _MINUTE_STEPS,
+            "incrs": tuple(k * self.period for k in (1, 2, 5, 10, 20, 50)) if self.period else round_times,
             "space": 55,
             "size": _X_SIZE if time_axis else 8,
         }
@@ -265,7 +268,7 @@ class UplotFigure:
     def config_key(self) -> tuple[Any, ...]:
         """Compare equal while only the numbers changed: then sending ``data`` alone is enough."""
         looks = tuple((c.name, c.color, c.dash, c.width, c.state) for c in self.curves)
-        scale = self.floor, self.ticks, self.decades, self.bands
+        scale = self.floor, self.ticks, self.decades, self.bands, self.period
         return self.key, self.symbol, self.unit.name, self.time_unit.name, looks, scale
 
 

@@ -251,3 +251,15 @@ def test_a_step_of_a_lesson_leaves_out_what_is_zero_throughout() -> None:
     assert moving({key: plots[key] for key in zero}) == {key: plots[key] for key in zero}, (
         "else nothing is seen"
     )
+
+
+def test_a_lesson_in_minutes_has_a_tick_at_every_swing() -> None:
+    lesson = lessons()[0]
+    run, action = simulate(lesson.scenario_of(0)), lesson.steps[0].action
+    assert action is not None and action.display == {"time": "min"}
+    shown = Display().with_(lesson=lesson.id, **action.display)
+    swing = round(2.0 * np.pi / run.scenario.omega_s / 60.0, 1)
+    assert swing == 84.4 or swing == 84.5
+    for display, first in ((shown, swing), (Display(time="min"), 0.01), (Display(lesson=lesson.id), None)):
+        axis = error_plots(run, display=display)["phi_e"].kwargs(height=300)["axes"][0]
+        assert (axis["incrs"][0] == first) == (first is not None), display

@@ -9,6 +9,7 @@ import numpy as np
 from navcore.engine.run import ENDINGS, MethodRun, PlotSeries, Run
 from navcore.engine.verification import Verification
 from navcore.foundation.text import Text
+from navcore.foundation.units import HOUR
 from navcore.quantities import ERRORS, NAMES, Kind
 from schuler_bench.plots import style
 from schuler_bench.plots.envelope import Envelope
@@ -127,6 +128,9 @@ def error_plots(
     time_s = _time_axis(run)
     unit_of_time = time_unit(float(time_s[-1]) if len(time_s) else 0.0, display.time)
     time = np.ascontiguousarray(time_s / unit_of_time.si)
+    # A lesson that counts minutes counts swings: 84.4 min.
+    in_swings = display.lesson and unit_of_time.si < HOUR
+    period = round(math.tau / run.scenario.omega_s / unit_of_time.si, 1) if in_swings else 0.0
     lines = _lines(run, overlay, pins, display, time_s)
     scaled = [line.method for line in lines if counts(line.curve.state)] or [line.method for line in lines]
     deciding = [method for method in scaled if method.status != "diverged"]
@@ -147,6 +151,7 @@ def error_plots(
             time=time,
             curves=tuple(replace(line.curve, values=_drawn(line, column, unit, most)) for line in lines),
             floor=0.0 if key == "position" else None,
+            period=period,
         )
         if envelope is not None and len(envelope.t_s):
             plot = _with_band(plot, envelope, column, time_s, len(run.methods))
