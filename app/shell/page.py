@@ -200,7 +200,7 @@ class Page:
     def display_changed(self, by: object) -> None:
         """Draw the pictures in front as the session's display says."""
         del by
-        self._arrange(keeping_front=True)
+        self._arrange()
         self._update(self._follow_display)
         self._again_pictures()
 
@@ -390,10 +390,10 @@ class Page:
         """Sizes for the window as it is, and as large as the session's display says."""
         return layout_for(*self._window, presentation=self.session.display.enlarged)
 
-    def _arrange(self, *, keeping_front: bool = False) -> None:
+    def _arrange(self) -> None:
         """Lay the results out anew if the window, or what stands in it, has another size now.
 
-        The page is asked to keep the tabs in front where it tells of nothing new by itself.
+        Panels that are made anew have their first tab in front: the page is asked for those that were.
         """
         with self.session.lock, self.client.atomic():
             layout = self.wanted_layout()
@@ -402,12 +402,10 @@ class Page:
             self._layout = layout
             self.gui.main_panel.set_width(round(layout.left_px * layout.scale))
             self.column.build(layout)
-            if keeping_front:
+            front = [view.title for view in self._views if view.title in self._front]
+            if front:
                 self._heard.content = ""
-                front = [view.title for view in self._views if view.title in self._front]
                 self.commands.ask_page("front", "|".join(front))
-            else:
-                self._front = frozenset()
             for view in self._views:
                 self._faults.call(view.follow_scenario)
                 self._faults.call(view.follow_display)

@@ -175,9 +175,11 @@ def test_menu_description_and_search_open_from_the_bar(moving: Bench) -> None:
 def test_who_presents_and_a_lesson_give_the_3d_view_the_room_of_the_plots(moving: Bench) -> None:
     width = "() => document.querySelector('[data-dock-region=\"right\"]').getBoundingClientRect().width"
     least = moving.page.evaluate(width)
+    moving.tab("Poles")
     for large in (True, False):
         moving.button("Present").click()
         moving.page.wait_for_function(f"large => large === ({width})() < {least / 2}", arg=large)
+    assert moving.page.evaluate("look.inFront", [moving.said("Poles")]), "the tabs in front stay"
     for lesson, large in (("5-foucault-beat", "view"), ("5-foucault-beat", "plots")):
         moving.session.show(None, lesson=lesson, large=large)
         moving.page.wait_for_function(f"large => large === ({width})() < {least / 2}", arg=large == "view")
