@@ -79,6 +79,16 @@ def test_the_focus_is_seen(moving: Bench) -> None:
     assert len({element for *_, element in seen}) == 6
 
 
+def test_the_first_slider_is_two_keys_away(moving: Bench) -> None:
+    page, skip = moving.page, moving.page.locator("#sb-skip")
+    assert page.evaluate("() => document.body.firstElementChild.id") == "sb-skip", "Tab leads to it first"
+    skip.focus()
+    box = skip.bounding_box()
+    assert box is not None and box["y"] >= 0.0, "seen while it has the focus"
+    page.keyboard.press("Enter")
+    assert page.evaluate("() => document.activeElement.ariaLabel") == moving.said("damping ratio ζ")
+
+
 def test_keys_on_a_control_do_not_move_the_camera(moving: Bench) -> None:
     """viser listens to arrows and letters on the whole document."""
     page = moving.page

@@ -60,6 +60,7 @@ window.schuler.words = {
   "Plot over time: {0}; curves: {1}": "时域图：{0}；曲线：{1}",
   "Plot over time": "时域图",
   "Map in 3D: the true track, the computed tracks and the ship. The tab Metrics has the numbers.": "三维地图：真实航迹、计算航迹和船。数值见“性能”页。",
+  "To the first slider": "转到第一个滑块",
   "Copy the HTML of a frame that shows this view as it is now": "复制以当前样子显示此视图的框架 HTML",
   "Embed": "嵌入",
   "Copied": "已复制",

@@ -97,12 +97,17 @@
     if (moves && event.target instanceof Element && event.target.closest(CONTROL)) event.stopPropagation();
   });
 
+  // Tab and Enter: the first slider lies thirty keys behind the top bar and the chips.
+  const skip = Object.assign(document.createElement("button"), { id: "sb-skip", type: "button", textContent: "To the first slider" });
+  skip.addEventListener("click", () => document.querySelector('[data-dock-region="left"] [role="slider"]')?.focus());
+
   let changed = true;
   window.schuler.changed(() => (changed = true));
   addEventListener("resize", () => (changed = true)); // what has become too long for its panel
   setInterval(() => {
     if (!changed) return;
     changed = false;
+    if (!skip.isConnected && !window.schuler.alone) document.body.prepend(skip);
     controls();
     plots();
     landmarks();
