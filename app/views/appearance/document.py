@@ -323,8 +323,7 @@ def _pins(session: Session) -> str:
     reasons += [_reasons(pin.run, edited(pin), pin.hex, pin.name) for pin in pins if pin.run is not None]
     return _section(
         Text("Pins"),
-        Text('<div class="table">{table}</div>', table=table),
-        Text("<h3>Why</h3>"),
+        Text('<div class="table">{table}</div><h3>Why</h3>', table=table),
         *reasons,
     )
 
