@@ -25,6 +25,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.column import Column
 from schuler_bench.shell.commands import Commands
 from schuler_bench.shell.editor import Editor
+from schuler_bench.shell.following import Following
 from schuler_bench.shell.header import HeaderPanel
 from schuler_bench.shell.layout import Columns, Layout, Window, layout_for
 from schuler_bench.shell.opening import Opening
@@ -62,7 +63,6 @@ class Page:
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
-        self._behind: set[str] = set()
         self._views: list[View] = []
         self._faults = ViewFaults(client)
         self._pace = Pace(self._draw, self._refresh_late)
@@ -137,6 +137,7 @@ class Page:
         self.column.build(self._layout)
         # One that could not be built has no widgets to show anything with: its fault stands in its tab.
         self._views = [view for view in self._views if not self._faults.failed(view)]
+        self._following = Following(self._views, self.column, self._faults)
         free = frozenset({self._reports.window_id, self._reports.painted_id, self.commands.box_id})
         self.palette = Palette(frame, self, free)
 
@@ -177,25 +178,8 @@ class Page:
         self._pace.controls_wait = False
         self.editor.catch_up()
         self.header.show_scenario()
-        for view in self._in_sight():
-            self._follow(view)
+        self._following.follow(self._in_front)
         self.palette.show()
-
-    def _in_sight(self) -> list[View]:
-        """All views but the results' tabs behind others: these catch up once they come to the front."""
-        behind = self.column.behind(self._in_front)
-        self._behind |= behind
-        return [view for view in self._views if view.title not in behind]
-
-    def _follow(self, view: View) -> None:
-        self._faults.call(view.follow_scenario)
-        self._faults.call(view.follow_jobs)
-
-    def _catch_up(self) -> None:
-        fresh, self._behind = self._behind & self._front, self._behind - self._front
-        for view in self._views:
-            if view.title in fresh:
-                self._follow(view)
 
     def display_changed(self, by: object) -> None:
         """Draw the pictures in front as the session's display says."""
@@ -277,8 +261,7 @@ class Page:
         self._update(self._follow_jobs)
 
     def _follow_jobs(self) -> None:
-        for view in self._in_sight():
-            self._faults.call(view.follow_jobs)
+        self._following.follow(self._in_front, jobs_alone=True)
 
     def _update(self, act: Callable[[], None]) -> None:
         """Change the page in one piece, unless it has gone."""
@@ -375,8 +358,8 @@ class Page:
         if self._built:
             self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(report)}"></div>'
             self._arrange()
-            if self._behind & self._front:
-                self._update(self._catch_up)
+            if self._following.is_late(front):
+                self._update(lambda: self._following.catch_up(front))
             self.column.take_rooms(rooms)
             self._show_stale()
             self.column.tell_front(self._front)

@@ -84,11 +84,10 @@ class LinearNetwork:
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         arrays = self.num_p, self.den_p, self.poles, self.feedback_p, self.closed_loop_p
-        parts = (b"" if array is None else array.tobytes() for array in arrays)
-        return *parts, self.omega_s, self.realisation
+        return *(b"" if one is None else one.tobytes() for one in arrays), self.omega_s, self.realisation
 
     def __eq__(self, other: object) -> bool:
-        """Whether another network has the same coefficients and poles: a cache can have it as its key."""
+        """Whether another network has the same coefficients and poles, as the key of a cache."""
         return isinstance(other, LinearNetwork) and self._key == other._key
 
     def __hash__(self) -> int:

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
+from navcore.scenario.file import load
 from schuler_bench.http.server import DashboardServer
 from schuler_bench.serve import Dashboard, open_dashboard
 from schuler_bench.session.session import Session
@@ -86,6 +87,14 @@ def fresh(bench: Bench) -> Bench:
 def moving(bench: Bench) -> Bench:
     """Give the shared page with a ship under way; the third of its methods is selected."""
     bench.reset("sikuliaq-like", "Frequency", "Errors", "Method", selected=2)
+    return bench
+
+
+@pytest.fixture
+def short(bench: Bench) -> Bench:
+    """An hour of the moving preset."""
+    scenario = load("sikuliaq-like", ["run.duration_h=1.0"])
+    bench.put(scenario, "Method", "Errors", origin=f"test {bench.session.run_number}", selected=2)
     return bench
 
 

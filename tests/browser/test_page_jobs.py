@@ -1,32 +1,22 @@
-"""What is computed in the background: verification, Sun's table, why, bands, proposals, fronts."""
+"""What is computed in the background: verification, Sun's table, why, bands, sweeps, studies."""
 
-import re
 import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from navcore.design.designs import designs
 from navcore.engine.measures import measure
 from navcore.quantities import QUANTITIES
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.jobs.designer import FrontsTask, LimitsTask
 from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
-from schuler_bench.views.design.view import BUDGET_OF, CHOICES, OVER, PLACES
-from schuler_bench.views.design.view import FIND as FIND_DESIGNS
-from schuler_bench.views.design.view import STOP as STOP_DESIGNS
 from schuler_bench.views.study import view as study
 from schuler_bench.views.sweep.view import METRIC
 from schuler_bench.views.sweep.view import SWEEP as RUN_SWEEP
-from schuler_bench.views.tune import finder
-from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
-from schuler_bench.views.tune.view import SEARCH_FOR
-from tests.browser.driver import SWEEP, Bench
-from tests.limits import require
+from tests.browser.driver import Bench
 
 VERIFY, STOP_VERIFYING = "Verify with full strapdown", "Stop verifying"
 FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
@@ -44,14 +34,6 @@ class Endless:
             progress(0.25)
             threading.Event().wait(0.01)
         raise AssertionError("its result is not asked for")
-
-
-@pytest.fixture
-def short(bench: Bench) -> Bench:
-    """An hour of the moving preset."""
-    scenario = load("sikuliaq-like", ["run.duration_h=1.0"])
-    bench.put(scenario, "Method", "Errors", origin=f"test {bench.session.run_number}", selected=2)
-    return bench
 
 
 def test_the_strapdown_is_told_in_numbers_and_becomes_old(short: Bench) -> None:
@@ -237,111 +219,6 @@ def test_a_band_follows_the_scenario_and_says_what_it_is(moving: Bench, band: st
     kind = session.display.envelope
     found = session.envelopes.beside(session.run.scenario, kind)
     assert found is not None and not found.old and found.high[2] is not None
-
-
-@pytest.fixture(params=SWEEP, ids=str)
-def designing(request: pytest.FixtureRequest, moving: Bench) -> Bench:
-    """The tab Design in a window of some size."""
-    moving.resize(request.param)
-    moving.tab("Design")
-    return moving
-
-
-def test_the_bars_follow_a_slider_and_the_run_has_four_panels(designing: Bench) -> None:
-    page = designing.page
-    designing.choose(BUDGET_OF, CHOICES["steady"])
-    page.wait_for_function("() => look.bars() > 0")
-    before = page.evaluate("look.bars")
-    designing.press("network.zeta")
-    page.wait_for_function("old => Math.abs(look.bars() - old) > 1e-4 * old", arg=before)
-    designing.choose(BUDGET_OF, CHOICES["run"])
-    page.wait_for_function("() => look.panels() === 4", timeout=60_000)
-
-
-def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
-    page, session, accept = moving.page, moving.session, moving.button(ACCEPT)
-    before = session.scenario
-    moving.tab("Tune")
-    moving.button(TUNE).click()
-    accept.wait_for(timeout=120_000)
-    told = page.locator(".sb-proposal")
-    # the runs come before Accept
-    assert "times the floor" in told.inner_text() and "Mean of 32 runs" in told.inner_text()
-    assert session.scenario == before
-    accept.click()
-    accept.wait_for(state="hidden")
-    assert session.scenario.method[2].network != before.method[2].network
-    told.get_by_text("Accepted for complementary").wait_for()
-    moving.button(UNDO).click()
-    accept.wait_for()
-    assert session.scenario == before
-    moving.button(TUNE).click()
-    moving.button(DISCARD).wait_for(timeout=120_000)
-    moving.button(DISCARD).click()
-    page.locator(".sb-proposal").wait_for(state="hidden")
-    assert session.scenario == before
-
-
-def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
-    page, session = moving.page, moving.session
-    moving.tab("Design")
-    page.get_by_text("This scenario has no limits yet.").wait_for()
-    require(moving, tilt_max_arcsec=12.0)
-    page.locator("[data-design=complementary]").wait_for()
-    moving.button(FIND_DESIGNS).wait_for()
-    before, limits = session.scenario, session.searches.limits
-    # all networks take too long for a test
-    limits.result, limits.asked = designs(before, 2, as_set=True), LimitsTask(before)
-    limits._tell()
-    take = page.locator("[data-design=classic2] .sb-take")
-    take.wait_for()
-    with moving.next_run():
-        take.click()
-    assert session.scenario.method[2].network.id == "classic2"
-    assert session.undo() and session.scenario == before
-    limits.forget()
-
-
-def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -> None:
-    session, limits = short.session, short.session.searches.limits
-    short.tab("Design")
-    require(short, tilt_max_arcsec=12.0)
-    short.choose(OVER, PLACES["study"])
-    short.show(study_x="nothing-such", study_y="nothing")
-    short.button(FIND_DESIGNS).click()
-    short.page.get_by_text("The designs cannot be found").wait_for()
-    short.close_notices()
-    short.show(study_x="latitude")
-    short.button(FIND_DESIGNS).click()
-    short.button(STOP_DESIGNS).wait_for()
-    task = limits.under_way
-    assert task is not None and task.scenario == session.scenario
-    assert task.study is not None and [one.fields for one in task.study.factor] == [("site.lat_deg",)]
-    limits.cancel()
-    short.button(FIND_DESIGNS).wait_for()
-
-
-def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(designing: Bench) -> None:
-    page, session = designing.page, designing.session
-    designing.tab("Tune")
-    designing.choose(SEARCH_FOR, "Pareto fronts")
-    designing.button(finder.FIND).click()
-    designing.button(finder.STOP).click()
-    ended = re.compile("Stopped: no fronts were found|The search was stopped: these are the fronts")
-    page.get_by_text(ended).first.wait_for(timeout=60_000)
-    # what the stopped search has found must not be clicked for what the next one finds
-    session.searches.fronts.forget()
-    session.searches.fronts._tell()
-    page.wait_for_function("() => look.frontSpot('classic3') === null")
-    # all networks take too long for a test
-    task = FrontsTask(session.scenario, 2, ("tilt_rms", "velocity_rms"), ("classic2", "classic3"))
-    session.searches.fronts.begin(task)
-    page.wait_for_function("look.frontRests", arg="classic3", timeout=60_000)
-    before = session.scenario
-    page.mouse.click(*page.evaluate("look.frontSpot", "classic3"))
-    designing.notice("classic3 from the Pareto fronts")
-    assert session.scenario.method[2].network.id == "classic3"
-    assert session.undo() and session.scenario == before
 
 
 def test_one_click_sweeps_four_quantities_and_a_change_makes_them_old(short: Bench) -> None:

@@ -15,6 +15,7 @@ from schuler_bench.editing import edits
 from schuler_bench.session.shown import shown
 from schuler_bench.shell.reports import run_element
 from schuler_bench.views.errors.view import _SMALL, OVERVIEW, error_curves
+from schuler_bench.views.study.view import StudyView
 from tests.browser.conftest import Another, Served
 from tests.browser.driver import Bench
 
@@ -276,3 +277,16 @@ def test_a_plot_in_its_large_window_follows_the_run(moving: Bench) -> None:
     page.wait_for_function(changed, arg=before)
     page.keyboard.press("Escape")
     page.wait_for_selector(_LARGE, state="detached")
+
+
+def test_a_tab_behind_others_catches_up_when_it_comes_to_the_front(moving: Bench, dashboard: Served) -> None:
+    session = moving.session
+    page = next(page for page in dashboard[1]._pages.values() if page.session.id == session.id)
+    study = next(view for view in page._views if isinstance(view, StudyView))
+    before = study._over.options
+    with moving.next_run():
+        unity = {"id": "unity2", "zeta": 0.5}
+        session.change(edits.with_value(session.scenario, ("method", 2, "network"), unity), None)
+    assert study._over.options == before, "nobody sees them"
+    moving.tab("Study")
+    assert {*study._options("study_x")} == {*study._over.options} != {*before}

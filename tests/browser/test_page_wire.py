@@ -102,22 +102,6 @@ def _ids(dashboard: Served, session_id: str) -> list[str]:
     return [page._reports.window_id for page in _pages(dashboard[1], session_id)]
 
 
-def test_a_tab_behind_others_catches_up_when_it_comes_to_the_front(dashboard: Served) -> None:
-    server, served = dashboard
-    with visit(server.port, name := named(dashboard, "tab-behind-others")) as visitor:
-        ready(visitor)
-        eventually(lambda: bool(_pages(served, name)))
-        page = _pages(served, name)[0]
-        study = next(view for view in page._views if isinstance(view, StudyView))
-        before = study._over.options
-        page.session.select(1, None)
-        page.session.change(edits.with_value(page.session.scenario, ("method", 1, "network"), UNITY), None)
-        assert study._over.options == before, "nobody sees them"
-        visitor.set(visitor.control(PAGE_STATE), WIDE.replace("Errors", "Study"))
-        eventually(lambda: study._over.options != before)
-        assert {*study._options("study_x")} == {*study._over.options}
-
-
 def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard: Served) -> None:
     server, served = dashboard
     with visit(server.port, named(dashboard, "flood-of-moves")) as visitor:

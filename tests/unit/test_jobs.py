@@ -11,7 +11,16 @@ from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.jobs.designer import Designer, Fronts, FrontsTask, Limits, TableTask, Tuner, TuningTask
+from schuler_bench.jobs.designer import (
+    Designer,
+    Fronts,
+    FrontsTask,
+    Limits,
+    LimitsTask,
+    TableTask,
+    Tuner,
+    TuningTask,
+)
 from schuler_bench.jobs.scheduler import Lane, Load
 from schuler_bench.jobs.searches import Searches
 from schuler_bench.jobs.verifier import CHANGED, STOPPED, Verifier
@@ -204,7 +213,7 @@ SHIP = Scenario.parse(
     [
         (Designer, TuningTask(SHIP, "tilt_rms", ("method.0.network.xi",), ()), lambda one: one.best),
         (Fronts, FrontsTask(SHIP, 0, ("tilt_rms", "velocity_rms")), lambda one: one.fronts["compass"]),
-        (Limits, SHIP, lambda one: one.methods),
+        (Limits, LimitsTask(SHIP), lambda one: one.methods),
     ],
 )
 def test_what_a_halted_search_has_found_is_kept_and_marked(kind: Any, task: Any, found: Any) -> None:

@@ -39,7 +39,7 @@ def reviewed(sessions: Sessions) -> tuple[Session, str]:
     reviewer = sessions.get(SessionIds().new_copy(author.share()))
     pinned(reviewer, 0.6, "calmer")
     pinned(reviewer, 0.9, "too stiff")
-    pinned(author, 0.7)
+    pinned(author, 0.8)
     return author, f"http://bench.example/s/{reviewer.share()}/?tab=Compare"
 
 
