@@ -142,8 +142,11 @@ class Bench(Choosing):
         return self._id_of(box_labels(name))
 
     def _id_of(self, labels: list[str]) -> str:
+        # a tab behind others may have a field of the same name
         script = """labels => [...document.querySelectorAll('label')]
-          .find(label => labels.includes(label.textContent))?.htmlFor ?? null"""
+          .filter(label => labels.includes(label.textContent))
+          .sort((one, other) => (one.offsetParent === null) - (other.offsetParent === null))[0]
+          ?.htmlFor ?? null"""
         labels = [self.said(label) for label in labels]
         self.page.wait_for_function(f"labels => ({script})(labels) !== null", arg=labels)
         return self.page.evaluate(script, labels)
