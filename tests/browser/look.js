@@ -136,7 +136,7 @@ look.moved = async ids => {
 };
 
 look.drawnNames = () => [...document.querySelectorAll('.js-plotly-plot')].flatMap(
-  p => p._fullData.filter(t => t.visible === true).map(t => t.name));
+  p => p.offsetParent === null ? [] : p._fullData.filter(t => t.visible === true).map(t => t.name));
 
 look.opacity = () => Number(getComputedStyle(document.querySelector('.js-plotly-plot')).opacity);
 
