@@ -28,11 +28,7 @@ class Following:
         """Show the session's scenario, and how far its searches are."""
         behind = self._column.behind(front)
         self._late |= behind
-        for view in self._views:
-            if view.title not in behind:
-                if not jobs_alone:
-                    self._faults.call(view.follow_scenario)
-                self._faults.call(view.follow_jobs)
+        self._follow([view for view in self._views if view.title not in behind], jobs_alone=jobs_alone)
 
     def is_late(self, front: Set[str]) -> bool:
         """Whether a tab has come to the front that did not follow."""
@@ -41,7 +37,10 @@ class Following:
     def catch_up(self, front: Set[str]) -> None:
         """Let those tabs follow."""
         late, self._late = self._late & front, self._late - front
-        for view in self._views:
-            if view.title in late:
+        self._follow([view for view in self._views if view.title in late])
+
+    def _follow(self, views: Sequence[View], *, jobs_alone: bool = False) -> None:
+        for view in views:
+            if not jobs_alone:
                 self._faults.call(view.follow_scenario)
-                self._faults.call(view.follow_jobs)
+            self._faults.call(view.follow_jobs)

@@ -130,7 +130,7 @@ def outcomes(
 
     with ThreadPoolExecutor(_WORKERS) as pool:
         # the first seed alone: it computes the gains of a filter that the others share
-        first = len(gains) and not bare.strapdown
+        first = int(bool(gains) and not bare.strapdown)
         for number in numbers[:first]:
             done += block([number])
         for k in [*gains]:
@@ -219,14 +219,13 @@ def _side_by_side(
     sensors: SensorErrors,
 ) -> list[Outcome]:
     step_s, env = scenario.run.step_s, inputs[0][0]
-    law = law_of(method, network_of(scenario, method), step_s)
     batch = ErrorModelBatch(
         step_s,
         env.steps,
         env.coefficients,
         sensors,
         [seen_by(method, env.reference) for env, _ in inputs],
-        [law] * len(inputs),
+        law_of(method, network_of(scenario, method), step_s),
         [state for _, state in inputs],
         requirement_spans(scenario, step_s),
     )

@@ -23,7 +23,7 @@ from navcore.mechanization.error_model import (
     runge_kutta,
 )
 from navcore.mechanization.recorder import Errors, given_out, take_lengths
-from navcore.mechanization.trajectory import Coefficients
+from navcore.mechanization.trajectory import Coefficients, RateTerms
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 
 WIDTH = 8
@@ -31,30 +31,6 @@ WIDTH = 8
 _W = WIDTH
 # Rows of a block's flat state: the errors, then what is held over a step.
 _HELD, _ROWS = 7, 17
-
-
-class _Half(NamedTuple):
-    """Numbers of `navcore.mechanization.trajectory.HALF_STEP` that a rate needs.
-
-    As scalars, so that LLVM knows that no store into the block's state changes them.
-    """
-
-    w_e: float
-    w_n: float
-    w_u: float
-    f_e: float
-    f_n: float
-    f_u: float
-    inv_m: float
-    inv_n: float
-    tan_lat: float
-    earth_n: float
-    earth_u: float
-    v_e: float
-    v_n: float
-    v_u: float
-    up_lat: float
-    sec_lat: float
 
 
 class _Runs(NamedTuple):
@@ -73,7 +49,8 @@ class _Runs(NamedTuple):
 
 @inlined
 def _half(c):
-    return _Half(
+    """As scalars, so that LLVM knows that no store into the block's state changes them."""
+    return RateTerms(
         c.w_e, c.w_n, c.w_u, c.f_e, c.f_n, c.f_u, c.inv_m, c.inv_n, c.tan_lat, c.earth_n, c.earth_u,
         c.v_e, c.v_n, c.v_u, c.up_lat, c.sec_lat,
     )  # fmt: skip
@@ -164,8 +141,8 @@ class ErrorModelBatch:
         Of all runs one behind the other, shapes (runs, n, 3): `one_behind_the_other`.
     references : sequence of ReferenceErrors
         One a run, with as many epochs each.
-    laws : sequence of Law
-        One a run, of one method.
+    law : Law
+        Of the method, as each run begins with it.
     starts : sequence of ndarray, shape (7,)
         Errors at t = 0, SI.
     spans : ndarray of `navcore.mechanization.recorder.SPAN`
@@ -193,7 +170,7 @@ class ErrorModelBatch:
         coefficients: Coefficients,
         sensors: SensorErrors,
         references: Sequence[ReferenceErrors],
-        laws: Sequence[Law],
+        law: Law,
         starts: Sequence[np.ndarray],
         spans: np.ndarray,
     ) -> None:
@@ -204,9 +181,9 @@ class ErrorModelBatch:
         self.spans = np.tile(spans[spans["first"] <= steps], (runs, 1))
         self.position_m, self.diverged = np.zeros(runs), np.zeros(runs, bool)
         self._runs = _Runs(
-            p=stacked([law.p for law in laws], LAW_PARAMETERS),
-            s=stacked([law.s for law in laws], LAW_STATE),
-            ring=np.stack([law.ring for law in laws]),
+            p=stacked([law.p] * runs, LAW_PARAMETERS),
+            s=stacked([law.s] * runs, LAW_STATE),
+            ring=np.stack([law.ring] * runs),
             gyro=sensors.gyro,
             accel=sensors.accel,
             log=LogErrors(

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,29 @@ HALF_STEP = record_type(
 """Coefficients at one half step."""
 COLUMNS = len(HALF_STEP.names or ())
 """Numbers of a half step's coefficients."""
+
+
+class RateTerms(NamedTuple):
+    """Numbers of a half step that a rate needs (`navcore.mechanization.error_model`), named as there."""
+
+    w_e: float
+    w_n: float
+    w_u: float
+    f_e: float
+    f_n: float
+    f_u: float
+    inv_m: float
+    inv_n: float
+    tan_lat: float
+    earth_n: float
+    earth_u: float
+    v_e: float
+    v_n: float
+    v_u: float
+    up_lat: float
+    sec_lat: float
+
+
 LAW_INPUT = record_type(
     v_e=REAL, v_n=REAL,  # true velocity, m/s
     heading=REAL,  # rad

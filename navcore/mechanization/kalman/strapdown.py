@@ -6,7 +6,6 @@ covariance moves along the *computed* navigation: its position, velocity, attitu
 
 import math
 from dataclasses import dataclass, fields
-from typing import NamedTuple
 
 import numpy as np
 
@@ -35,33 +34,13 @@ from navcore.mechanization.strapdown.log import (
 )
 from navcore.mechanization.strapdown.records import COMPLETE, UNDER_WAY
 from navcore.mechanization.strapdown.run import StrapdownRun
+from navcore.mechanization.trajectory import RateTerms
 
 PLACE = record_type(
     epoch=COUNT,  # of the log, in force
     force=(REAL, (3,)),  # velocity increments since the last call, body axes, m/s
 )
 """Where the filter is between two chunks."""
-
-
-class _Coefficients(NamedTuple):
-    """Coefficients of the error model at the computed navigation, named as in `trajectory.HALF_STEP`."""
-
-    w_e: float
-    w_n: float
-    w_u: float
-    f_e: float
-    f_n: float
-    f_u: float
-    inv_m: float
-    inv_n: float
-    tan_lat: float
-    earth_n: float
-    earth_u: float
-    v_e: float
-    v_n: float
-    v_u: float
-    up_lat: float
-    sec_lat: float
 
 
 @inlined
@@ -73,7 +52,7 @@ def _computed(con, x, f_e, f_n, f_u):
     inv_n = 1.0 / (prime_vertical_radius(con.e2, sin_lat) + x.height)
     v_e, v_n, tan_lat = x.v[0], x.v[1], sin_lat / cos_lat
     earth_n, earth_u = EARTH_RATE * cos_lat, EARTH_RATE * sin_lat
-    return _Coefficients(
+    return RateTerms(
         -v_n * inv_m, earth_n + v_e * inv_n, earth_u + v_e * tan_lat * inv_n, f_e, f_n, f_u, inv_m, inv_n,
         tan_lat, earth_n, earth_u, v_e, v_n, x.v[2], v_e * inv_n / (cos_lat * cos_lat), 1.0 / cos_lat,
     )  # fmt: skip
