@@ -11,13 +11,11 @@ from tyro.conf import Positional, arg
 from schuler_bench.cli.terminal import emit_result, say
 
 if TYPE_CHECKING:
-    from navcore.checks.file import FileReport
+    from navcore.checks.report import FileReport
 
 
-_READERS = (
-    "schuler_bench.cli.check_scenario", "navcore.checks.file", "navcore.checks.imu", "navcore.io.csv",
-    "navcore.io.gpx", "navcore.io.nmea_recording", "navcore.io.tables", "navcore.scenario.file",
-)  # fmt: skip
+_READERS = ("navcore.checks.imu", "navcore.io.csv", "navcore.io.nmea_recording", "navcore.io.tables")
+_SCENARIO_READERS = ("schuler_bench.cli.check_scenario",)
 _BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io", "h5py")}
 """Modules that read the file, imported before the bounds are set."""
 
@@ -60,18 +58,15 @@ class CheckCommand:
 
 def guarded_check(file: str, map_file: str | None = None) -> FileReport:
     """Check a file in a child process with bounds on memory and time: it may come from anywhere."""
-    from navcore.checks.file import FileReport
+    from navcore.checks.report import FileReport
     from navcore.foundation import guarded
     from navcore.foundation.errors import InputError
-    from navcore.foundation.kernel_cache import complete
 
-    ending = PurePath(file).suffix.lower()
-    if not complete() and _is_scenario(file):
-        # A bounded child has no time to compile kernels, and cannot keep them.
-        from navcore.warm import compile_once
-
-        compile_once(lambda what: say(f"kernels: {what}"))
-    guarded.start((*_READERS, *_BY_ENDING.get(ending, ())), guarded.Limits(2 << 30, cpu_s=120, wall_s=600.0))
+    readers = (*_READERS, *_BY_ENDING.get(PurePath(file).suffix.lower(), ()))
+    if _is_scenario(file):
+        _compile_kernels()
+        readers += _SCENARIO_READERS
+    guarded.start(readers, guarded.Limits(2 << 30, cpu_s=120, wall_s=600.0))
     try:
         return guarded.call(file, check, file, map_file)
     except InputError as error:
@@ -81,27 +76,51 @@ def guarded_check(file: str, map_file: str | None = None) -> FileReport:
 
 
 def _is_scenario(file: str) -> bool:
+    return PurePath(file).suffix.lower() == ".toml" or _is_preset(file)
+
+
+def _is_preset(file: str) -> bool:
+    from pathlib import Path
+
+    if Path(file).exists():
+        return False
     from navcore.scenario.file import presets
 
-    return PurePath(file).suffix.lower() == ".toml" or file in presets()
+    return file in presets()
+
+
+def _compile_kernels() -> None:
+    """Compile what is missing: a bounded child has no time for it, and cannot keep it."""
+    from navcore.foundation.kernel_cache import complete
+
+    if not complete():
+        from navcore.warm import compile_once
+
+        compile_once(lambda what: say(f"kernels: {what}"))
 
 
 def check(file: str, map_file: str | None = None) -> FileReport:
     """Check a file (by a map), or a preset by its name, in this process."""
-    from pathlib import Path
-
-    from navcore.checks.file import FileReport, check_file
+    from navcore.checks.file import check_file
     from navcore.checks.imu import IMU_CHECKER, check_mapped
-    from navcore.foundation.errors import InputError
     from navcore.io.column_map import map_beside
-    from navcore.scenario.file import presets
-    from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
 
     if mapped := map_file or map_beside(file):
         return check_mapped(file, mapped)
-    if file in presets() and not Path(file).exists():
-        try:
-            return check_scenario(file)
-        except InputError as error:
-            return FileReport(file, "", faults=error.faults)
-    return check_file(file, [SCENARIO_CHECKER, IMU_CHECKER])
+    if not _is_scenario(file):
+        return check_file(file, [IMU_CHECKER])
+    return _check_scenario(file)
+
+
+def _check_scenario(file: str) -> FileReport:
+    from navcore.checks.file import check_file
+    from navcore.checks.report import FileReport
+    from navcore.foundation.errors import InputError
+    from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
+
+    if not _is_preset(file):
+        return check_file(file, [SCENARIO_CHECKER])
+    try:
+        return check_scenario(file)
+    except InputError as error:
+        return FileReport(file, "", faults=error.faults)

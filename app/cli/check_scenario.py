@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from navcore.checks.file import Checker, FileReport
+from navcore.checks.file import Checker
+from navcore.checks.report import FileReport
 from navcore.engine.drivers.common import network_of, stability_of
 from navcore.engine.environment import Environment, environment
 from navcore.foundation.errors import InputError

@@ -22,8 +22,8 @@ from schuler_bench.http.limits import MIB, Limits
 from schuler_bench.session.folder import TEMPORARY, opened, remove_files, temporary_name
 
 if TYPE_CHECKING:
-    from navcore.checks.file import FileReport
     from navcore.checks.map_guess import Preview
+    from navcore.checks.report import FileReport
 
 LARGEST_FILE = Limits().upload_bytes
 """The server's limit of an upload: there is one."""

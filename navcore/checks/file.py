@@ -1,15 +1,15 @@
-"""Report on a file and its faults, in words and as data: behind ``schuler check``."""
+"""Check a log, track or heading file: behind ``schuler check``."""
 
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from navcore.foundation.errors import Fault, InputError
+from navcore.checks.report import FileReport
+from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
 from navcore.io.agreement import agreement_warnings, clock_text
@@ -32,59 +32,6 @@ _NAMES = {
     "heading": "heading",
     "attitude": Text("pitch and roll"),
 }
-
-
-@dataclass(frozen=True)
-class FileReport:
-    """Outcome of a check.
-
-    Attributes
-    ----------
-    file : str
-        Path as given.
-    kind : str
-        What it was understood as; empty when it was not.
-    details : dict
-        What it holds, ready for JSON.
-    text : tuple of str
-        The same for reading.
-    warnings : tuple of str
-        What the user should know.
-    faults : tuple of Fault
-        Why it was not understood.
-    """
-
-    file: str
-    kind: str
-    details: dict[str, Any] = field(default_factory=dict)
-    text: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    faults: tuple[Fault, ...] = ()
-
-    @property
-    def ok(self) -> bool:
-        """Whether the file was understood."""
-        return not self.faults
-
-    def lines(self) -> list[str]:
-        """Text for a terminal: what it holds, then warnings and faults."""
-        head = [f"{self.file}: {self.kind}"] if self.kind else []
-        words = [Text("warning: {warning}", warning=warning) for warning in self.warnings]
-        return [*head, *self.text, *words, *(str(fault) for fault in self.faults)]
-
-    def as_dict(self) -> dict[str, Any]:
-        """One JSON document (numbers that are unknown are null)."""
-        return {
-            "file": self.file,
-            "ok": self.ok,
-            "kind": self.kind,
-            **self.details,
-            "warnings": list(self.warnings),
-            "faults": [
-                {"where": f.where, "field": f.field, "value": _plain(f.value), "allowed": f.allowed}
-                for f in self.faults
-            ],
-        }
 
 
 class Checker(NamedTuple):
@@ -145,12 +92,6 @@ def check_log(path: Path, column_map: ColumnMap | None = None) -> FileReport:
         tuple(_text(source, recording, quantities)),
         _warnings(source, recording),
     )
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value if value is None or isinstance(value, str | int | float) else str(value)
 
 
 def _stream(stream: StreamReport) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from navcore.checks.file import Checker, FileReport, check_log
+from navcore.checks.file import Checker, check_log
 from navcore.checks.imu_suspects import (
     force_reason,
     outlier_warnings,
@@ -16,6 +16,7 @@ from navcore.checks.imu_suspects import (
     turn_warnings,
     upward_remedy,
 )
+from navcore.checks.report import FileReport
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR

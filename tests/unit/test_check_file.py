@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navcore.checks.file import Checker, FileReport, check_file
+from navcore.checks.file import Checker, check_file
+from navcore.checks.report import FileReport
 from tests.nmea import sentence, ship_files, stamped, vbw, write
 
 

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.checks.file import FileReport, check_file
+from navcore.checks.file import check_file
+from navcore.checks.report import FileReport
 
 LATE = "the speed through the water is"
 

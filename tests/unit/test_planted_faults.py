@@ -8,8 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from navcore.checks.file import FileReport, check_file
+from navcore.checks.file import check_file
 from navcore.checks.imu import IMU_CHECKER
+from navcore.checks.report import FileReport
 
 Columns = dict[str, np.ndarray]
 COUNT = 240
