@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from schuler_bench.bridge.controls import id_of, set_slider_range
 from schuler_bench.editing import form, typed
+from schuler_bench.editing.choices import choice_words, chosen
 from schuler_bench.editing.form import FieldSpec, Path, Slider
 from schuler_bench.shell import notices
 
@@ -22,7 +23,6 @@ _TEXTS = {
     "pairs": (typed.read_pairs, typed.write_pairs),
 }
 """Kinds of fields that are shown as text: how that is read and written."""
-_AS_THEY_ARE = ("integer", "choice")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
 _CAST = {"number": float, "flag": bool}
@@ -89,8 +89,9 @@ class Control:
         """Make what holds the exact value."""
         spec, value, hint = self.spec, self.value, self.spec.hint or None
         if spec.kind == "choice":
+            words = tuple(map(choice_words, spec.choices))
             return gui.add_dropdown(
-                spec.label, spec.choices, initial_value=str(value), hint=hint, order=order
+                spec.label, words, initial_value=choice_words(str(value)), hint=hint, order=order
             )
         if spec.kind == "flag":
             return gui.add_checkbox(spec.label, bool(value), hint=hint, order=order)
@@ -123,7 +124,7 @@ class Control:
         self._slider_moved, self._last, self._behind = by_slider, _UNKNOWN, False
         if by_slider and self._slider is not None and self._range is not None:
             return self._range.value(self._slider.take())
-        return self._box.take()
+        return self._given(self._box.take())
 
     def follow(self, value: Any) -> None:
         """Take over the value the user has just given, leaving the moved widget alone.
@@ -153,7 +154,12 @@ class Control:
     def _as_shown(self, value: Any) -> Any:
         if self.spec.kind in ("number", "flag"):
             return _CAST[self.spec.kind](value)
-        return value if self.spec.kind in _AS_THEY_ARE else self.as_text(value)
+        if self.spec.kind == "choice":
+            return choice_words(value)
+        return value if self.spec.kind == "integer" else self.as_text(value)
+
+    def _given(self, shown: Any) -> Any:
+        return chosen(self.spec.choices, shown) if self.spec.kind == "choice" else shown
 
     def as_text(self, value: Any) -> str:
         """Text of a value in a text box."""
@@ -168,7 +174,7 @@ class Control:
     @property
     def held(self) -> Any:
         """Value that the box holds, or is to show."""
-        return self._as_shown(self.value) if self._behind else self._box.handle.value
+        return self._given(self._as_shown(self.value) if self._behind else self._box.handle.value)
 
     @property
     def moving(self) -> bool:

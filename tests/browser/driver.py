@@ -25,7 +25,7 @@ from schuler_bench.session.sessions import Sessions
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.page import Page as OpenPage
 from tests.browser.choosing import Choosing
-from tests.browser.fields import box_labels, slider_labels
+from tests.browser.fields import box_labels, slider_labels, words_of
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
 T = TypeVar("T")
@@ -174,7 +174,8 @@ class Bench(Choosing):
     def choose(self, name: str, option: str) -> None:
         """Choose in a dropdown and wait until what follows is shown; a run need not follow."""
         self.box(name).click()
-        self.page.get_by_role("option", name=self.said(option), exact=True).click()
+        words = self.said(words_of(name, option))
+        self.page.get_by_role("option", name=words, exact=True).click()
         self.settle()
 
     def choose_and_run(self, name: str, option: str) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import lru_cache
+from typing import Any
 
 from pydantic import BaseModel
 
@@ -16,8 +17,17 @@ from navcore.scenario.method import Method
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 from schuler_bench.editing import form
+from schuler_bench.editing.choices import choice_words
 from schuler_bench.editing.form import FieldSpec
 from schuler_bench.shell.control import EXACT
+
+_CHOOSERS = ("alignment", "damping", "motion", "network", "policy", "reference", "switching")
+"""Names of the choosers of a kind, each by its label."""
+
+
+def words_of(name: str, value: Any) -> Any:
+    """What the control of a field shows for a value."""
+    return choice_words(value) if name in _CHOOSERS or name in _specs() else value
 
 
 def slider_labels(name: str) -> list[str]:

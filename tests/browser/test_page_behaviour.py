@@ -13,6 +13,7 @@ import pytest
 from navcore.networks.compass import gains_from_sigma_xi
 from navcore.scenario.file import load, presets, to_toml
 from schuler_bench.editing import edits
+from schuler_bench.editing.choices import choice_words
 from schuler_bench.session.session import Session
 from schuler_bench.views.scene.track import HALF_WIDTH
 from tests.browser.driver import Bench
@@ -70,7 +71,7 @@ def test_a_wrong_value_is_restored_and_the_reason_said(fresh: Bench, session: Se
     fresh.choose("policy", "adaptive")
     fresh.notice("policy: not taken over")
     assert any("unity2" in note for note in fresh.notes)
-    assert fresh.box("policy").input_value() == "constant"
+    assert fresh.box("policy").input_value() == choice_words("constant")
 
 
 def test_a_number_may_be_typed_letter_by_letter_through_wrong_ones(fresh: Bench) -> None:

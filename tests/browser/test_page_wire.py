@@ -26,7 +26,7 @@ from schuler_bench.views.tune.view import TuneView
 from tests.attack.conftest import eventually
 from tests.attack.wire import Visitor, visit
 from tests.browser.conftest import Served
-from tests.browser.fields import box_labels, label_of, slider_labels
+from tests.browser.fields import box_labels, label_of, slider_labels, words_of
 
 WIDE = "1920x1080|Method|Frequency|Errors"
 
@@ -228,6 +228,7 @@ class Wire:
         """Set a control of a field; return how many pictures of each kind changed."""
         label = self.named(box_labels(name) if exact else slider_labels(name))
         number = self.session.run_number
+        value = words_of(name, value)
         self.visitor.set(self.controls[label]["uuid"], value)
         self._values[self.controls[label]["uuid"]] = value
         eventually(lambda: self.session.run_number > number, 60.0)

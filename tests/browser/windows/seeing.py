@@ -9,6 +9,7 @@ from playwright.sync_api import Locator
 from navcore.foundation.parameters import Parameters
 from navcore.scenario.file import load, presets
 from schuler_bench.editing import form
+from schuler_bench.editing.choices import choice_words
 from schuler_bench.views.learn.lessons import lessons
 from tests.browser.driver import Bench
 
@@ -41,7 +42,9 @@ def as_written() -> frozenset[str]:
             words |= set(re.findall(r"[A-Za-z]+", method.name))
     for kind in models(Parameters):
         for info in kind.model_fields.values():
-            words |= {part for one in form.choices_of(info) for part in re.findall("[A-Za-z]+", one)}
+            words |= {
+                part for one in form.choices_of(info) for part in re.findall("[A-Za-z]+", choice_words(one))
+            }
             words |= set(re.findall("[A-Za-z]+", str((info.json_schema_extra or {}).get("unit", ""))))
     return frozenset(words)
 
