@@ -37,12 +37,13 @@
     const place = thumb().getBoundingClientRect();
     const now = place.left + place.width / 2;
     const x = now >= box.right - 2 ? box.left : now;
+    const end = Math.ceil(box.right); // a mouse event's place is cut to whole pixels
     const began = performance.now();
     drag = { x, timer: 0 };
     hand("mousedown", x);
     drag.timer = setInterval(() => {
-      if (!row.isConnected || !track() || drag.x >= box.right) return stop();
-      drag.x = Math.min(box.right, x + (box.width * (performance.now() - began)) / WHOLE_MS);
+      if (!row.isConnected || !track() || drag.x >= end) return stop();
+      drag.x = Math.min(end, x + (box.width * (performance.now() - began)) / WHOLE_MS);
       hand("mousemove", drag.x);
     }, TICK_MS);
     say();
