@@ -34,7 +34,9 @@ MAP, FOLLOW, TOP, SIDE = CAMERAS = (Text("map"), Text("follow"), Text("top"), Te
 _TILT: dict[str, tuple[float, ...]] = {MAP: (78.0, 72.0, 66.0, 58.0, 50.0), TOP: (90.0,), SIDE: (22.0,)}
 """Elevation of the camera above the map, deg: the first at which the map's width fills the view."""
 _ROOM = 1.1
-"""Scene units east and west of the map for its labels."""
+"""Scene units east and west of the map for its labels, at least."""
+_LATITUDE_PX = 30
+"""Half the width of a label of latitude, which is as wide from afar."""
 _SOUTH, _NORTH = -HALF_WIDTH - 1.4, HALF_WIDTH + 0.5
 """How far labels and scale bar, and the arrow to the north, reach beyond the map's edges."""
 _BAR_LABEL_PX = 18
@@ -134,7 +136,8 @@ def _fit(tilt: float, half: float, window: Window) -> tuple[float, float, bool]:
     # With as much room above as below n is ``middle + slope * distance``; the southern edge looks widest.
     weights = sizes**2 / np.sum(sizes**2)
     middle, slope = float(weights @ (_SOUTH, _NORTH)), -float(weights @ (low, high))
-    edge = (HALF_WIDTH + _ROOM) * window.height / (half * window.width)
+    label = HALF_WIDTH * _LATITUDE_PX / max(0.5 * window.width - _LATITUDE_PX, 1.0)
+    edge = (HALF_WIDTH + max(_ROOM, label)) * window.height / (half * window.width)
     across = (edge + (HALF_WIDTH + middle) * math.cos(tilt)) / (1.0 - slope * math.cos(tilt))
     distance = max(across, upright)
     return distance, middle + slope * distance, upright <= across
