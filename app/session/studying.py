@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from navcore.foundation import guarded
+from navcore.foundation.cores import cores
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.file import FILE_FIELDS, parse_toml, presets, read
@@ -127,6 +128,23 @@ def chosen_task(session: Session) -> StudyTask:
     plan = Plan(study, where)
     require_small(plan)
     return StudyTask(study, where, plan.scenario, present)
+
+
+def planned(session: Session) -> str:
+    """How many runs the chosen study has, and about how long they take; or why it cannot be run."""
+    from navcore.study.plan import Plan
+
+    try:
+        task = chosen_task(session)
+    except InputError as error:
+        return Text.joined("; ", map(str, error.faults))
+    plan = Plan(task.study, task.where)
+    return Text(
+        "{runs} runs, each of {methods} methods; about {seconds} s.",
+        runs=plan.runs,
+        methods=len(task.scenario.method),
+        seconds=max(1, round(plan.seconds() / cores())),
+    )
 
 
 def study_of_designs(session: Session) -> Study:

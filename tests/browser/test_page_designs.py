@@ -35,6 +35,14 @@ def test_the_bars_follow_a_slider_and_the_run_has_four_panels(designing: Bench) 
     page.wait_for_function("() => look.panels() === 4", timeout=60_000)
 
 
+def test_without_limits_the_budget_is_shown_and_the_way_to_them(designing: Bench) -> None:
+    page = designing.page
+    page.wait_for_function("() => look.bars() > 0")
+    page.get_by_text("This scenario has no limits yet").wait_for()
+    page.locator(".sb-none").get_by_role("button", name="Requirements").click()
+    page.get_by_role("tab", name="Requirements", exact=True, selected=True).wait_for()
+
+
 def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
     page, session, accept = moving.page, moving.session, moving.button(ACCEPT)
     before = session.scenario
@@ -62,7 +70,7 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
 def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
     page, session = moving.page, moving.session
     moving.tab("Design")
-    page.get_by_text("This scenario has no limits yet.").wait_for()
+    page.get_by_text("This scenario has no limits yet").wait_for()
     require(moving, tilt_max_arcsec=12.0)
     page.locator("[data-design=complementary]").wait_for()
     moving.button(FIND_DESIGNS).wait_for()

@@ -1,5 +1,6 @@
 """What is computed in the background: verification, Sun's table, why, bands, sweeps, studies."""
 
+import re
 import threading
 from pathlib import Path
 from typing import Any
@@ -247,12 +248,13 @@ def test_a_study_is_run_stopped_gone_on_with_and_its_worst_run_opened(short: Ben
     session.show(None, study_x="latitude", study_y="log_bias", study_seeds=20)
     short.tab("Study")
     page.get_by_text("Run the study: every point of the grid").wait_for()
+    planned = page.get_by_text(re.compile("[0-9]+ runs, each of 3 methods; about [0-9]+ s")).inner_text()
     short.button(study.RUN).click()
     short.wait_until(lambda: (studier.fraction or 0.0) > 0.05, seconds=60.0)
     short.button(study.STOP).click()
     page.get_by_text("Stopped after").wait_for(timeout=30_000)
     part = studier.result.document["runs"]
-    assert 0 < part < studier.result.document["of"]
+    assert 0 < part < studier.result.document["of"] == int(re.findall("([0-9]+) runs", planned)[0])
     short.button(study.GO_ON).click()
     short.wait_until(lambda: studier.result.complete, seconds=120.0)
     short.button(study.GO_ON).wait_for(state="hidden")

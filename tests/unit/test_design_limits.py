@@ -132,8 +132,6 @@ def test_the_table_has_a_row_a_method_with_share_limit_and_this_run(ship: Scenar
     # the answer to a slider, before a seed is run
     bare = designs_html(run, lambda _: None, None)
     assert bare.count("runs are under way") == 3 and "✗ misses" in bare
-    none = replace(run, scenario=ship.model_copy(update={"requirement": ()}))
-    assert "This scenario has no limits yet." in designs_html(none, lambda _: None, None)
 
 
 def test_over_a_study_the_table_shows_the_worst_point_and_what_it_costs(ship: Scenario) -> None:

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 TAKE_DESIGN = "take-design"
 """Command that puts a design into the method that is edited: ``take-design 3``, its place."""
 NO_LIMITS = Text(
-    "This scenario has no limits yet. Give what the ship needs, such as the largest tilt, in the tab "
-    "Requirements; this table then says which methods meet it, and with what probability."
+    "This scenario has no limits yet: the bars show where the error comes from. Give what the ship needs, "
+    "such as the largest tilt; a table then says which methods meet it, and with what probability."
 )
 _TAKE, _TAKE_HINT = Text("Take"), Text("Put it into the method that is edited; undo takes it back.")
 _TUNED = Text("Every network, tuned for these limits, and a Kalman filter")
@@ -92,9 +92,6 @@ def designs_html(
     note : str
         HTML above the table.
     """
-    if not run.scenario.requirement:
-        link = Text('<button class="sb-sort" data-command="tab Requirements">Requirements</button>')
-        return Text('<p class="sb-none">{words:html} {link}</p>', words=NO_LIMITS, link=link)
     own = [
         Line(method.method, odds(method.method), said, growth=method.growth_per_s)
         for method, said in zip(run.methods, _in_run(run), strict=True)
@@ -114,6 +111,12 @@ def designs_html(
     said = Text("Limits: {asked}.", asked=words)
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
+
+
+def limits_wanted() -> str:
+    """Where to give limits, for a scenario without any."""
+    link = Text('<button class="sb-sort" data-command="tab Requirements">Requirements</button>')
+    return Text('<p class="sb-none">{words:html} {link}</p>', words=NO_LIMITS, link=link)
 
 
 def _robust_title(found: Robust) -> str:

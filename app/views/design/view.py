@@ -12,6 +12,7 @@ from schuler_bench.jobs.designer import LimitsTask
 from schuler_bench.jobs.judge import Odds
 from schuler_bench.plots.budgets import steady_budget
 from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.display import Display
 from schuler_bench.session.shown import Shown
 from schuler_bench.session.studying import study_of_designs
 from schuler_bench.shell import notices
@@ -20,7 +21,7 @@ from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.searching import SearchControls, reveal, show_html
 from schuler_bench.shell.view import Figures, Frame, if_user
 from schuler_bench.views.design.figure import budget_figure
-from schuler_bench.views.design.limits import TAKE_DESIGN, designs_html
+from schuler_bench.views.design.limits import TAKE_DESIGN, designs_html, limits_wanted
 
 BUDGET_OF = Text("show")
 CHOICES = {
@@ -104,24 +105,20 @@ class DesignView(PlotlyView):
         """Have the budget of the new run computed, if that is what is shown."""
         self._ask(found.run.scenario)
 
-    @property
-    def _of_limits(self) -> bool:
-        return self.session.display.budget == "limits"
-
     def follow_scenario(self) -> None:
         """Offer the search where there are limits."""
         self.follow_jobs()
 
     def follow_jobs(self) -> None:
         """Show how far the search for designs is."""
-        wanted = self._of_limits and bool(self.session.scenario.requirement)
+        wanted = _as_table(self.session.display, self.session.scenario)
         self._controls.follow(wanted)
         reveal((self._over, wanted))
 
     def take_new(self) -> bool:
         """Whether shares, designs or the budget of the run have just been computed."""
         run, known = self.session.run, (self._judge.known, self._limits.result, self._limits.words)
-        if self._of_limits:
+        if run is not None and _as_table(self.session.display, run.scenario):
             new = known != self._known
             self._known = known
             return new
@@ -150,7 +147,7 @@ class DesignView(PlotlyView):
 
     def picture(self, found: Shown) -> PlotlyFigure:
         """Make the bars; a figure without anything while the table is shown."""
-        return PlotlyFigure() if found.display.budget == "limits" else super().picture(found)
+        return PlotlyFigure() if _as_table(found.display, found.run.scenario) else super().picture(found)
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the bars, to be saved."""
@@ -158,10 +155,10 @@ class DesignView(PlotlyView):
         return super().picture(found), []
 
     def show(self, picture: PlotlyFigure) -> None:
-        """Send the bars, or show the table."""
+        """Send the bars, or show the table; above the bars, what a table of limits would need."""
         super().show(picture)
         run = self.session.run
-        html = ""
+        html = limits_wanted() if picture and self.session.display.budget == "limits" else ""
         if not picture and run is not None:
             self._judge.follow(run.scenario)
             note = notices.note((*self._judge.words, *self._limits.words), "warning")
@@ -199,6 +196,11 @@ class DesignView(PlotlyView):
             return
         if self._budgeter.under_way != scenario:
             self._budgeter.begin(scenario)
+
+
+def _as_table(display: Display, scenario: Scenario) -> bool:
+    """Whether the table of limits is shown; until there are limits, the budget of the steady state is."""
+    return display.budget == "limits" and bool(scenario.requirement)
 
 
 VIEW = DesignView

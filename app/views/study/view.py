@@ -13,7 +13,7 @@ from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.plots.varied import SWEPT
 from schuler_bench.session.display import SWEPT as METRICS
 from schuler_bench.session.shown import Shown
-from schuler_bench.session.studying import NOTHING, PRESENT, UPLOADED, chosen_task, run_scenario
+from schuler_bench.session.studying import NOTHING, PRESENT, UPLOADED, chosen_task, planned, run_scenario
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
 from schuler_bench.shell.plotly_view import PlotlyView
@@ -50,6 +50,7 @@ class StudyView(PlotlyView):
         super().__init__(frame)
         self._studier = frame.session.searches.studier
         self._studies, self._drawn = tuple(studies()), None
+        self._planned: tuple[object, str] = (None, "")
         frame.commands.register("study", lambda _: self._begin(), RUN)
         frame.commands.register(OPEN_RUN, self._open)
 
@@ -230,8 +231,17 @@ class StudyView(PlotlyView):
         super().show(picture)
         html = ""
         if not picture:
-            html = self._tables(buttons=True) or notices.small(_EMPTY)
+            html = self._tables(buttons=True) or notices.small(Text.joined(" ", (_EMPTY, self._size())))
         show_html(self._table, Text('<div class="sb-wide sb-table">{html}</div>', html=html) if html else "")
+
+    def _size(self) -> str:
+        """How large the chosen study is; found anew when that may have changed."""
+        display, scenario = self.session.display, self.session.scenario
+        of = (display.study, display.study_x, display.study_y, display.study_seeds, self.session.study_file)
+        key = (*of, scenario.run, len(scenario.method))
+        if self._planned[0] != key:
+            self._planned = key, planned(self.session)
+        return self._planned[1]
 
     # ------------------------------------------------------------ commands
 
