@@ -41,12 +41,6 @@ _WORDS = {
     "legs": Text("legs (manoeuvres)"),
     "track": Text("track (recorded)"),
     "as_printed": Text("as printed"),
-    # networks
-    "classic2": Text("classic2 (textbook)"),
-    "classic3": Text("classic3 (textbook)"),
-    "unity2": Text("unity2 (H(0) = 1)"),
-    "pole2": Text("pole2 (damping ratio)"),
-    "optimal": Text("optimal (LQG)"),
 }
 
 

@@ -86,6 +86,12 @@ def test_the_card_of_the_tour_leaves_the_sliders_free_and_goes_with_its_subject(
     assert not any(overlap(told, slider.bounding_box() or {}) for slider in sliders)
     fresh.tab("Sensors")
     card.wait_for(state="detached")
+    controls = fresh.page.locator('[data-dock-region="left"]').bounding_box() or {}
+    for step in range(6):
+        fresh.page.evaluate("step => schuler.command('tour', step)", str(step))
+        fresh.page.wait_for_timeout(400)
+        (told,) = boxes(fresh, ".sb-tour")
+        assert told["x"] >= controls["x"] + controls["width"], f"step {step} lies over the controls"
 
 
 def test_the_help_of_a_control_covers_no_other_control(fresh: Bench) -> None:

@@ -1,7 +1,6 @@
 """From limits to designs in the page: shares of seeds in the background, the table, and taking a design."""
 
 import re
-from dataclasses import replace
 from typing import Any
 
 import pytest

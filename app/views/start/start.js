@@ -140,7 +140,8 @@
       // What stands in the left column has the controls above and below it.
       const beside = box.left < 40 && box.width < innerWidth / 2 && box.right + 16 + width <= innerWidth;
       if ((below || above) && !beside) {
-        left = box.left;
+        const controls = document.querySelector('[data-dock-region="left"]')?.getBoundingClientRect().right ?? 0;
+        left = Math.max(box.left, controls + 8);
         top = below ? box.bottom + 12 : box.top - 12 - height;
       } else {
         left = !beside && box.left > width + 24 ? box.left - width - 16 : box.right + 16;
