@@ -31,11 +31,12 @@ def test_gains_are_linked_both_ways_with_sigma_and_xi(fresh: Bench, session: Ses
         return [fresh.value(label) for label in labels]
 
     fresh.type("network.sigma", "0.01")
-    assert shown(*GAINS) == pytest.approx(gains_from_sigma_xi(0.01, 0.7, omega_s), rel=1e-8)
+    exact = gains_from_sigma_xi(0.01, 0.7, omega_s)
+    assert shown(*GAINS) == [float(f"{value:.6g}") for value in exact], "six digits are shown of what follows"
     for label, value in zip(GAINS, gains_from_sigma_xi(0.02, 0.9, omega_s), strict=True):
         assert note not in fresh.notes or label != GAINS[0]
         fresh.type(label, f"{value:.12g}")
-    assert shown("network.sigma", "network.xi") == pytest.approx([0.02, 0.9], rel=1e-8)
+    assert shown("network.sigma", "network.xi") == pytest.approx([0.02, 0.9], rel=1e-6)
     assert note not in fresh.notes
     # Zha's second set (theory.md 3.1)
     for label, text in zip(GAINS, ("0.00768", "6.68", "0.00768"), strict=True):

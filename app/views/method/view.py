@@ -247,7 +247,10 @@ def _values(scenario: Scenario, index: int) -> dict[Path, Any]:
     method, path = scenario.method[index], ("method", index)
     values: dict[Path, Any] = {(*path, "damping"): method.damping}
     network = method.network.taken() | edits.network_values(scenario, index) | {"id": method.network.id}
-    return values | {(*path, "network", name): _shown(value) for name, value in network.items()}
+    return values | {
+        (*path, "network", name): value if getattr(method.network, name, None) is not None else _shown(value)
+        for name, value in network.items()
+    }
 
 
 def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
@@ -256,7 +259,7 @@ def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
 
 def _shown(value: Any) -> Any:
     # What follows from other parameters has endless digits; six are shown, all are used.
-    return form.significant(value, 9) if isinstance(value, float) else value
+    return form.significant(value, 6) if isinstance(value, float) else value
 
 
 VIEW = MethodView
