@@ -97,6 +97,13 @@ def test_ended_method_is_padded_and_named_and_does_not_set_the_scale() -> None:
     assert np.isfinite(error_plots(alone)["phi_n"].data[1]).all()
 
 
+def test_an_error_that_every_run_leaves_at_zero_is_said_to_be() -> None:
+    labels = {key: plot.axes()[1]["label"] for key, plot in error_plots(simulate(load("zha-fast"))).items()}
+    zero = {key for key, label in labels.items() if " = 0" in label}
+    assert {"phi_n", "dve"} <= zero and not zero & {"phi_e", "dvn", "position"}
+    assert labels["dve"].startswith("δVE = 0 (")
+
+
 def test_viser_takes_the_arguments() -> None:
     from viser import GuiApi, uplot
 

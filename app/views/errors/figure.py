@@ -145,7 +145,7 @@ def error_plots(
             key=key,
             quantity=error.name,
             title=error.title,
-            symbol=error.symbol,
+            symbol=error.symbol if peaks[key] > 0.0 else Text("{symbol} = 0", symbol=error.symbol),
             unit=unit,
             time_unit=unit_of_time,
             time=time,
