@@ -10,6 +10,7 @@ from navcore.design.pareto import Pareto
 from navcore.design.result import Budget
 from navcore.design.tune import Tuned
 from navcore.quantities import TILT, TUNED, VELOCITY, Kind, budgeted
+from navcore.study.robust_tune import TunedOver
 from schuler_bench.cli.table import columns, number
 
 
@@ -97,6 +98,8 @@ def tune_text(objective: str, tuned: Tuned) -> list[str]:
             ["  times the floor", number(tuned.objective / tuned.floor, 4) if tuned.floor else "-", ""],
         ]
     )
+    if isinstance(tuned, TunedOver):
+        lines += _over(objective, tuned)
     if tuned.confirmed is not None:
         lines += _confirmed(tuned.confirmed)
     if tuned.default_limits:
@@ -106,6 +109,17 @@ def tune_text(objective: str, tuned: Tuned) -> list[str]:
         without = " ".join(_in_unit(objective, cost)).rstrip()
         lines.append(f"active: {text}" + ("" if cost is None else f"; without it {without}"))
     return [*lines, *(f"warning: {text}" for text in tuned.warnings), *unstated(tuned.assumed_zero)]
+
+
+def _over(objective: str, tuned: TunedOver) -> list[str]:
+    where = ", ".join(f"{name} = {value}" for name, value in tuned.where.items()) or "the scenario itself"
+    rows = [
+        [f"over {tuned.points} points", "", "", ""],
+        ["  worst", *_in_unit(objective, tuned.worst), where],
+        ["  in the scenario itself", *_in_unit(objective, tuned.here), ""],
+        ["  best there", *_in_unit(objective, tuned.best_here), ""],
+    ]
+    return ["", *columns(rows)]
 
 
 def _confirmed(confirmed: Confirmed) -> list[str]:

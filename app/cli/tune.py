@@ -1,11 +1,13 @@
 """``schuler tune``: the best setting of a method under requirements."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
+from navcore.foundation.errors import Fault, InputError
 from navcore.quantities import OBJECTIVES, TUNED
 from schuler_bench.cli.terminal import emit_result, say
 
@@ -26,6 +28,8 @@ class TuneCommand:
         A limit, e.g. 'settling_s<=3600' or 'tilt_rms<=5arcsec'.
     worst_of : tuple of str
         A further scenario in which the same method counts too: the worst of all is made small.
+    over : str or None
+        Study (a name or a file) laid over the scenario: the worst of its points is made small.
     no_default_limits : bool
         Search without the limits on settling and growth that count where none is given.
     no_confirm : bool
@@ -59,6 +63,7 @@ class TuneCommand:
         ),
     ] = ()
     worst_of: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="SCENARIO")] = ()
+    over: Annotated[str | None, arg(metavar="STUDY")] = None
     no_default_limits: bool = False
     no_confirm: bool = False
     along: bool = False
@@ -72,19 +77,23 @@ class TuneCommand:
         from navcore.design.tune import tune
         from navcore.foundation.out import writing
         from navcore.scenario.file import load, to_toml
+        from navcore.study.file import load as load_study
+        from navcore.study.robust_tune import tune_over
         from schuler_bench.cli.design_text import tune_text
         from schuler_bench.cli.progress import working
 
         scenario = load(self.scenario, self.set)
-        others = [load(other) for other in self.worst_of]
+        search = partial(tune, scenario, worst_of=[load(other) for other in self.worst_of])
+        if self.over is not None:
+            if self.worst_of:
+                raise InputError(Fault("", "--over", self.over, "does not go with --worst-of"))
+            search = partial(tune_over, scenario, load_study(self.over))
         with working("tuning", self.quiet) as (progress, stopped):
-            result = tune(
-                scenario,
+            result = search(
                 self.objective,
                 self.vary,
                 self.require,
                 along=self.along,
-                worst_of=others,
                 default_limits=not self.no_default_limits,
                 confirm=not self.no_confirm,
                 progress=progress,

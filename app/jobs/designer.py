@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import InputError
@@ -46,6 +47,8 @@ class TuningTask:
         Keep `navcore.design.default_limits.DEFAULT_LIMITS` of what nothing limits.
     whole : bool
         Search all that the fields allow, not only what their sliders reach.
+    over : Study or None
+        At whose worst point the setting must be best; None: in the scenario.
     """
 
     scenario: Scenario
@@ -54,6 +57,7 @@ class TuningTask:
     require: tuple[str, ...]
     default_limits: bool = True
     whole: bool = False
+    over: Study | None = None
 
     @property
     def method(self) -> int:
@@ -252,8 +256,12 @@ def _tune(task: TuningTask, progress: Progress, cancelled: Cancelled) -> Tuned:
     from navcore.scenario.stochastic import stochastic_model
 
     varied = read_varied(task.scenario, task.vary, task.whole)
-    return tune(
-        task.scenario,
+    search = partial(tune, task.scenario)
+    if task.over is not None:
+        from navcore.study.robust_tune import tune_over
+
+        search = partial(tune_over, task.scenario, task.over)
+    return search(
         task.objective,
         [f"{one.field}={one.low!r}:{one.high!r}" for one in varied],
         task.require,

@@ -86,8 +86,9 @@ class Display(BaseModel):
     budget : str
         What the tab "Design" shows: the methods that meet the limits, or the error budget, of the steady
         state of one level channel or of the whole run.
-    design_over : str
-        Where designs must meet the limits: in the scenario, or at the worst point of the tab Study's study.
+    search_over : str
+        Where designs and tuned settings must hold: in the scenario, or at the worst point of the tab
+        Study's study.
     objective : str
         What a method is tuned for: one of `OBJECTIVES`.
     default_limits : bool
@@ -147,7 +148,7 @@ class Display(BaseModel):
     size: Literal["normal", "presentation"] = "normal"
     large: Literal["plots", "view"] = "plots"
     budget: Literal["limits", "steady", "run"] = "limits"
-    design_over: Literal["scenario", "study"] = "scenario"
+    search_over: Literal["scenario", "study"] = "scenario"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
     default_limits: bool = True
     beyond_sliders: bool = False

@@ -147,8 +147,8 @@ def planned(session: Session) -> str:
     )
 
 
-def study_of_designs(session: Session) -> Study:
-    """Study over whose points designs must hold: the one that the session's display chooses.
+def study_of_points(session: Session) -> Study:
+    """Study over whose points a search must hold: the one that the session's display chooses.
 
     Raises
     ------

@@ -19,7 +19,7 @@ from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.study.model import Study
-from navcore.study.plan import Plan
+from navcore.study.plan import Plan, Setting
 
 SEEDS = 40
 MOST_POINTS = 400
@@ -154,9 +154,7 @@ def robust_designs(
         It was cancelled.
     """
     require_limits(scenario)
-    plan = _laid_over(scenario, study, seeds, quantile)
-    places = [plan.at(number)[0] for number in range(plan.runs)]
-    points = [plan.scenario_of(place) for place in places]
+    plan, places, points = points_of(scenario, study, seeds, quantile)
     share, left_out = 0.0 if as_set else _TUNING_SHARE, ()
     methods: tuple[Method, ...] = scenario.method
     if not as_set:
@@ -179,6 +177,15 @@ def robust_designs(
     )
     ordered = tuple(sorted(shares, key=lambda one: one.order))
     return Robust(len(points), seeds, quantile, ordered, left_out)
+
+
+def points_of(
+    scenario: Scenario, study: Study, seeds: int = 1, quantile: float = 0.0
+) -> tuple[Plan, list[Setting], list[Scenario]]:
+    """Lay a study's factors over a scenario: the plan, the setting of each point and its scenario."""
+    plan = _laid_over(scenario, study, seeds, quantile)
+    places = [plan.at(number)[0] for number in range(plan.runs)]
+    return plan, places, [plan.scenario_of(place) for place in places]
 
 
 def _laid_over(scenario: Scenario, study: Study, seeds: int, quantile: float) -> Plan:

@@ -6,7 +6,8 @@ import pytest
 
 from navcore.design.designs import designs
 from schuler_bench.jobs.designer import FrontsTask, LimitsTask
-from schuler_bench.views.design.view import BUDGET_OF, CHOICES, OVER, PLACES
+from schuler_bench.shell.places import OVER, PLACES
+from schuler_bench.views.design.view import BUDGET_OF, CHOICES
 from schuler_bench.views.design.view import FIND as FIND_DESIGNS
 from schuler_bench.views.design.view import STOP as STOP_DESIGNS
 from schuler_bench.views.tune import finder
@@ -104,6 +105,25 @@ def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -
     assert task.study is not None and [one.fields for one in task.study.factor] == [("site.lat_deg",)]
     limits.cancel()
     short.button(FIND_DESIGNS).wait_for()
+
+
+def test_a_setting_is_tuned_over_the_points_of_the_tab_study(short: Bench) -> None:
+    session, designer = short.session, short.session.searches.designer
+    before = session.scenario
+    short.tab("Tune")
+    short.choose(OVER, PLACES["study"])
+    short.show(study_x="latitude", study_y="nothing")
+    short.button(TUNE).click()
+    short.button(ACCEPT).wait_for(timeout=120_000)
+    told = short.page.locator(".sb-proposal").inner_text()
+    assert f"Over {designer.result.points} points of the study the objective is at most" in told
+    assert "the setting that is best here has" in told
+    short.button(ACCEPT).click()
+    short.button(UNDO).wait_for()
+    # the method alone has changed: the proposal is put into this scenario
+    assert session.scenario.site == before.site and session.scenario.method != before.method
+    assert session.undo() and session.scenario == before
+    designer.forget()
 
 
 def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(designing: Bench) -> None:

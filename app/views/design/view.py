@@ -14,11 +14,11 @@ from schuler_bench.plots.budgets import steady_budget
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.session.display import Display
 from schuler_bench.session.shown import Shown
-from schuler_bench.session.studying import study_of_designs
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.places import PlacesChooser
 from schuler_bench.shell.plotly_view import PlotlyView
-from schuler_bench.shell.searching import SearchControls, reveal, show_html
+from schuler_bench.shell.searching import SearchControls, show_html
 from schuler_bench.shell.view import Figures, Frame, if_user
 from schuler_bench.views.design.figure import budget_figure
 from schuler_bench.views.design.limits import TAKE_DESIGN, designs_html, limits_wanted
@@ -29,8 +29,6 @@ CHOICES = {
     "steady": Text("budget of the steady state, one level channel"),
     "run": Text("budget of this run, all sources"),
 }
-OVER = Text("over")
-PLACES = {"scenario": Text("this scenario"), "study": Text("every point of the tab Study")}
 FIND, STOP = Text("Find designs for these limits"), Text("Stop finding designs")
 
 
@@ -74,17 +72,7 @@ class DesignView(PlotlyView):
         )
         words = {word: key for key, word in CHOICES.items()}
         self._chooser.on_update(if_user(lambda: self.frame.show(budget=words[self._chooser.value])))
-        self._over: Any = self.frame.gui.add_dropdown(
-            OVER,
-            tuple(PLACES.values()),
-            initial_value=PLACES[self.session.display.design_over],
-            hint=Text(
-                "Where designs must meet the limits: in this scenario, or at the worst point of what the tab "
-                "Study varies."
-            ),
-        )
-        places = {word: key for key, word in PLACES.items()}
-        self._over.on_update(if_user(lambda: self.frame.show(design_over=places[self._over.value])))
+        self._over = PlacesChooser(self.frame)
         hint = Text(
             "Tunes every network for the limits, then runs each on 200 seeds, or on 40 at every point of a "
             "study: up to a minute, or several."
@@ -96,7 +84,6 @@ class DesignView(PlotlyView):
     def follow_display(self) -> None:
         """Show the display's choice."""
         self._chooser.value = CHOICES[self.session.display.budget]
-        self._over.value = PLACES[self.session.display.design_over]
         self.follow_jobs()
         if self.session.run is not None:
             self._ask(self.session.run.scenario)
@@ -113,7 +100,7 @@ class DesignView(PlotlyView):
         """Show how far the search for designs is."""
         wanted = _as_table(self.session.display, self.session.scenario)
         self._controls.follow(wanted)
-        reveal((self._over, wanted))
+        self._over.follow(wanted)
 
     def take_new(self) -> bool:
         """Whether shares, designs or the budget of the run have just been computed."""
@@ -172,8 +159,8 @@ class DesignView(PlotlyView):
         session = self.session
         with notices.told(self.frame.client, Text("The designs cannot be found"), self.frame.refresh):
             with session.lock:
-                scenario, over = session.scenario, session.display.design_over
-            self._limits.begin(LimitsTask(scenario, study_of_designs(session) if over == "study" else None))
+                scenario = session.scenario
+            self._limits.begin(LimitsTask(scenario, self._over.study))
 
     def _take(self, text: str) -> None:
         """Put the design with this place into the method that is edited."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from navcore.design.vary import present, read_varied
@@ -14,11 +14,15 @@ from schuler_bench.jobs.refusals import spoken
 from schuler_bench.plots.limits import requirement_words
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
+from schuler_bench.plots.varied import value_text, varied_label
 from schuler_bench.views.tune.confirmation import confirmation_html
 
 if TYPE_CHECKING:
     from navcore.design.tune import Tuned
     from schuler_bench.jobs.designer import TuningTask
+
+
+_HERE = Text("this scenario")
 
 
 def proposal_html(task: TuningTask, tuned: Tuned, *, accepted: bool = False) -> str:
@@ -73,6 +77,7 @@ def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
     if tuned.floor:
         times = number(tuned.objective / tuned.floor, 3)
         sentences.append(Text("The proposed setting is {times} times the floor.", times=times))
+    sentences += _over(task, tuned)
     for field in tuned.at_end_of_range:
         name = symbol(field.rsplit(".", 1)[-1])
         sentences.append(
@@ -98,6 +103,31 @@ def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
         kept = Text.joined(", ", map(requirement_words, tuned.default_limits))
         sentences.append(Text("Kept by default: {kept}.", kept=kept))
     return [*sentences, *(spoken(text) for text in tuned.warnings if text not in _doubts(task, tuned))]
+
+
+def _over(task: TuningTask, tuned: Tuned) -> Iterator[str]:
+    """Say what the setting gives over the points of a study, and what that costs in the scenario itself."""
+    from navcore.study.robust_tune import TunedOver
+
+    if not isinstance(tuned, TunedOver):
+        return
+    quantity = QUANTITIES[task.objective]
+    factors = tuned.where.items()
+    where = [Text("{name} = {value}", name=varied_label(key), value=value_text(at)) for key, at in factors]
+    yield Text(
+        "Over {points} points of the study the objective is at most {worst} {unit}, with {where}; the runs "
+        "are of the point that was worst before.",
+        points=tuned.points,
+        worst=number(tuned.worst / quantity.size, 4),
+        unit=quantity.shown,
+        where=Text.joined(", ", where or [_HERE]),
+    )
+    yield Text(
+        "In this scenario it is {here} {unit}; the setting that is best here has {best}.",
+        here=number(tuned.here / quantity.size, 4),
+        unit=quantity.shown,
+        best=number(tuned.best_here / quantity.size, 4),
+    )
 
 
 def doubts(task: TuningTask, tuned: Tuned) -> list[str]:

@@ -1,6 +1,7 @@
 """Search for the best setting of the selected method, and accept or discard what comes out."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from navcore.design.default_limits import limits_by_default
@@ -16,6 +17,7 @@ from schuler_bench.jobs.refusals import OBJECTIVE, VARY
 from schuler_bench.plots.limits import limit_words, requirement_words
 from schuler_bench.session.display import OBJECTIVES, Display
 from schuler_bench.shell import notices
+from schuler_bench.shell.places import PlacesChooser
 from schuler_bench.shell.searching import SearchControls, reveal, show_html
 from schuler_bench.shell.view import Frame, if_user
 from schuler_bench.views.tune.change import change_network
@@ -60,6 +62,7 @@ class SettingPanel:
                 "without them it may tune the damping away."
             ),
         )
+        self._over = PlacesChooser(self.frame)
         self._beyond: Any = gui.add_checkbox(
             BEYOND,
             False,
@@ -119,6 +122,7 @@ class SettingPanel:
         show_html(
             self._found, Text('<div class="sb-wide">{html}</div>', html=html) if chosen and html else ""
         )
+        self._over.follow(chosen)
         reveal(
             (self._objective, chosen),
             (self._vary, chosen),
@@ -161,7 +165,8 @@ class SettingPanel:
             lines = [reason or Text("The network of this method has no parameter to vary.")]
             notices.tell(self.frame.client, Text("Nothing to tune"), lines)
             return
-        self._designer.begin(task)
+        with notices.told(self.frame.client, Text("The setting cannot be tuned"), self.frame.refresh):
+            self._designer.begin(replace(task, over=self._over.study))
 
     def _take(self) -> None:
         """Put the proposal into the present scenario."""
