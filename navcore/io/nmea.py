@@ -4,40 +4,26 @@ Only whole sentences with a right checksum are used; a file in which too many ar
 backwards, is refused rather than used in part.
 """
 
-from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+
+import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.nmea_clock import Clock
-from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_lines
-from navcore.io.nmea_sentences import KINDS, decode, is_used
+from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_sentences
+from navcore.io.nmea_readings import JITTER_S, Channel, Gathered, Quantities
+from navcore.io.nmea_sentences import KINDS, is_used
 from navcore.io.source import read_text
 
 MOST_BAD_CHECKSUMS = 0.2
 """A file is refused when more than this share of its sentences (or of one kind used) has a wrong checksum."""
-JITTER_S = 0.2
-"""A sentence may be this much older than the latest of its kind; more is called time running backwards."""
 MOST_LATE = 0.01
 """A file is refused when the time of more than this share of its used sentences runs backwards."""
-MOST_SOURCES = 8
-"""Words beside the sentences are instruments' names when there are no more different ones."""
 _CLOCK_WARNING_S = 5.0
 _MOST_NAMED = 12
-_LOGGED_DAY = "UNIXD"
-
-
-Row = tuple[Any, ...]
-
-
-class Channel(NamedTuple):
-    """Sentences of one address from one instrument (empty when the lines name none)."""
-
-    source: str
-    address: str
 
 
 @dataclass(frozen=True)
@@ -47,15 +33,17 @@ class NmeaLog:
     Attributes
     ----------
     readings : dict
-        By channel: list of UTC in s and the fields of a `Reading`, as plain tuples, which the collector of
-        garbage need not look through.
+        Quantities of each channel.
+    times : dict
+        By name of a kind, as the tally has it: times of its intact sentences, s.
     tally : Tally
         Counts of lines and faults.
     warnings : tuple of str
         What was left out or looks odd.
     """
 
-    readings: dict[Channel, list[Row]]
+    readings: dict[Channel, Quantities]
+    times: dict[str, np.ndarray]
     tally: Tally
     warnings: tuple[str, ...]
 
@@ -70,66 +58,22 @@ def read_nmea(path: Path) -> NmeaLog:
     """
     content = read_text(path)
     tally = Tally()
-    readings: defaultdict[Channel, list[Row]] = defaultdict(list)
     clock = Clock(content.text, path.name, tally)
-    latest: dict[Channel, float] = {}
-    for number, stamp, source, address, sentence in intact_lines(content.text, tally):
-        if address == _LOGGED_DAY:
-            clock.logged(sentence)
-        reading = decode(sentence, address)
-        if reading is None and is_used(address):
-            tally.unparsable += 1
-            continue
-        name = tally.count(tally.intact, address)
-        if reading is not None and reading.doubt:
-            tally.doubts[address, reading.doubt] += 1
-        time_s = clock.time_of(stamp, reading)
-        if time_s is None:
-            tally.untimed += reading is not None
-            continue
-        if reading is None or reading.says_nothing:
-            tally.times[name].append(time_s)
-        elif _in_order(number, channel := Channel(source, address), time_s, latest, tally):
-            tally.times[name].append(time_s)
-            readings[channel].append((time_s, *reading))
-    _refuse_unusable(path, tally, readings)
+    gathered = Gathered(tally)
+    for sentences in intact_sentences(content.text, tally):
+        gathered.add(sentences, clock)
+    readings, times = gathered.in_order()
+    _refuse_unusable(path, tally)
     warnings = (*content.warnings(), *_warnings(tally))
-    return NmeaLog(_of_instruments(readings), tally, warnings)
+    return NmeaLog(readings, times, tally, warnings)
 
 
-def _in_order(
-    number: int, channel: Channel, time_s: float, latest: dict[Channel, float], tally: Tally
-) -> bool:
-    before = latest.get(channel)
-    if before is None or time_s >= before:
-        latest[channel] = time_s
-        return True
-    if before - time_s <= JITTER_S + 1e-3:
-        tally.jitter += 1
-        return True
-    tally.late += 1
-    if tally.first_late is None:
-        tally.first_late = (number, before - time_s, channel.address)
-    return False
-
-
-def _of_instruments(readings: dict[Channel, list[Row]]) -> dict[Channel, list[Row]]:
-    """Join what only the words beside the sentences keep apart, when these are no instruments' names."""
-    if len({channel.source for channel in readings}) <= MOST_SOURCES:
-        return readings
-    joined: dict[Channel, list[Row]] = {}
-    for channel, rows in readings.items():
-        joined.setdefault(Channel("", channel.address), []).extend(rows)
-    return joined
-
-
-def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[Row]]) -> None:
+def _refuse_unusable(path: Path, tally: Tally) -> None:
     def refuse(allowed: str, line: int = 0) -> InputError:
         where = Text("{name}, line {line}", name=path.name, line=line) if line else path.name
         return InputError(Fault(where, "", None, allowed))
 
-    used = sum(len(rows) for rows in readings.values())
-    if tally.first_late is not None and tally.late > MOST_LATE * (used + tally.late):
+    if tally.first_late is not None and tally.late > MOST_LATE * (tally.used + tally.late):
         line, seconds, address = tally.first_late
         back = Text("time runs backwards by {seconds:.1f} s ({address})", seconds=seconds, address=address)
         raise refuse(Text("{back}: put the lines in order or split the file", back=back), line)
@@ -152,7 +96,7 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[Row]
                 most_bad_checksums=MOST_BAD_CHECKSUMS,
             )
         )
-    if used:
+    if tally.used:
         return
     if tally.untimed:
         raise refuse(

@@ -4,13 +4,16 @@ In this order: the sentence's own UTC (the stamp says which day, since old recei
 stamp; the last time known. Stamps in local time are told by the first dated sentence and corrected.
 """
 
+import math
 import re
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
-from navcore.io.nmea_lines import Tally
-from navcore.io.nmea_sentences import Reading
-from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader, midnight
+import numpy as np
+
+from navcore.io.nmea_lines import Sentences, Tally
+from navcore.io.stamps import LONGEST_STAMP, StampReader, midnight
 
 _DAY = 86400.0
 _QUARTER_S = 900.0
@@ -22,6 +25,7 @@ _LEAST_ERROR_S, _LARGEST_ERROR_S = 5.0, 3600.0
 """An error of the logger's clock within these is taken from the first dated sentence, for all lines."""
 _LONGEST_SENTENCE = 120
 _MOST_TRIES = 20_000
+_LOGGED_ADDRESS = "UNIXD"
 _DATE_PLACES = {"RMC,": (0, 8), "ZDA,": (0, 1)}
 """Where the fields stand: time and date (RMC), time and day (ZDA; month and year follow)."""
 _LOGGED_DAY = re.compile(r"(?<!\d)(\d{4})_\d{3}_\d{5}(?!\d)")
@@ -56,41 +60,56 @@ class Clock:
         known = datetime.fromtimestamp(self._date, UTC).year if self._date is not None else None
         self._year = int(year[1]) if year is not None else known
 
-    def logged(self, sentence: str) -> None:
+    def times(self, sentences: Sentences, readings: np.ndarray) -> Iterator[float]:
+        """UTC of the next sentences, s since 1970 (since midnight when nothing is dated).
+
+        NaN when it is unknown, and for what makes no sense. The readings, shape (n,), are of
+        `navcore.io.nmea_sentences.READING`.
+        """
+        rows, text = sentences.rows, sentences.block.text
+        columns = (
+            rows["stamp_s"],
+            rows["dated"],
+            *(readings[name] for name in ("sensible", "time_of_day", "day")),
+        )
+        for row, (stamp_s, dated, sensible, time_of_day, day) in enumerate(
+            zip(*(column.tolist() for column in columns), strict=True)
+        ):
+            if not sensible:
+                yield math.nan
+                continue
+            if sentences.addresses[row] == _LOGGED_ADDRESS:
+                self._take_logged(text[rows["begin"][row] : rows["end"][row]])
+            near = self._near(stamp_s, dated)
+            if math.isnan(time_of_day):
+                self._now = self._now if near is None else near
+            elif near is None:
+                self._now = self._without_stamp(time_of_day, day)
+            else:
+                self._now = _nearest_day(time_of_day, near)
+                self._tally.clock_offsets.append(near - self._now)
+            yield math.nan if self._now is None else self._now
+
+    def _take_logged(self, body: str) -> None:
         """Take the time of a line ``$UNIXD,<days since the year began>``: it holds for the lines after."""
         try:
-            days = float(sentence.partition("*")[0].split(",")[1])
+            days = float(body.split(",")[1])
             if self._year is not None and 0.0 <= days <= 800.0:
                 self._logged = datetime(self._year, 1, 1, tzinfo=UTC).timestamp() + days * _DAY
         except (ValueError, IndexError):
             return
 
-    def time_of(self, stamp: Stamp | None, reading: Reading | None) -> float | None:
-        """UTC of a sentence, s since 1970 (since midnight when nothing is dated); None when unknown."""
-        near = self._near(stamp)
-        own = reading.time_of_day if reading is not None else None
-        if own is None:
-            if near is not None:
-                self._now = near
-            return self._now
-        if near is not None:
-            self._now = _nearest_day(own, near)
-            self._tally.clock_offsets.append(near - self._now)
-        else:
-            self._now = self._without_stamp(own, reading.day if reading is not None else None)
-        return self._now
-
-    def _near(self, stamp: Stamp | None) -> float | None:
+    def _near(self, stamp_s: float, dated: bool) -> float | None:
         """Time of the stamp, or of the logger's line before."""
-        if stamp is None:
+        if math.isnan(stamp_s):
             return self._logged
-        seconds = stamp.seconds - self._tally.local_time_s - self._tally.clock_error_s
-        if stamp.dated:
+        seconds = stamp_s - self._tally.local_time_s - self._tally.clock_error_s
+        if dated:
             return seconds
-        return self._without_stamp(seconds, None)
+        return self._without_stamp(seconds, math.nan)
 
-    def _without_stamp(self, own: float, day: float | None) -> float:
-        if day is not None:
+    def _without_stamp(self, own: float, day: float) -> float:
+        if not math.isnan(day):
             return day + own
         if self._now is not None:
             return _nearest_day(own, self._now)

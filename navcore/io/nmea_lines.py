@@ -4,34 +4,33 @@ Before a sentence, or behind it, may stand a time (`navcore.io.stamps`), the nam
 number of a record, an NMEA 4 tag block, quotes: whatever loggers and archives put there.
 """
 
+import math
 import re
-from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import reduce
-from operator import xor
+from itertools import compress, repeat
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from navcore.foundation.text import Text
-from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader, day_comes_first
+from navcore.io.iso_stamps import iso_seconds
+from navcore.io.nmea_plain import LONGEST_LINE, Block, lines_of
+from navcore.io.stamps import LONGEST_STAMP, StampReader, day_comes_first
 
-LONGEST_LINE = 2048
-"""Longer lines are no sentences (an NMEA 0183 sentence has 82 characters) and are left out unread."""
 MOST_KINDS = 200
 """Kinds of sentences counted one by one; the others are counted together."""
 OTHER_KINDS = "others"
 _ADDRESS = re.compile(r"[A-Z0-9]{3,10}")
 _CHECKSUM = re.compile(r"[0-9A-Fa-f]{2}")
-_PLAIN = re.compile(
-    rf"([^$!]{{0,{LONGEST_STAMP}}})([$!]([A-Z0-9]{{3,10}}),[^$!*]*\*([0-9A-Fa-f]{{2}}))([^$!]*)"
-)
-"""A line that holds one sentence with a checksum and a stamp, if any, as most do."""
 _SENTENCE_START = re.compile(r"[$!][A-Z]{2,9},")
 _SOURCE = re.compile(r"(?<![A-Za-z])[A-Za-z][A-Za-z_-]{1,30}\d{0,6}")
 _WEEKDAYS = frozenset(Text("mon tue wed thu fri sat sun").split())
 _QUOTES = " \t\"',;"
 _LINES_LOOKED_AT = 20_000
+_BLOCK = 1 << 18
+"""Characters of a block: as many lines as are worth an array, and few enough to bound the memory."""
 
 
 @dataclass
@@ -57,19 +56,48 @@ class Tally:
     doubts: Counter[tuple[str, str]] = field(default_factory=Counter)
     """Fixes that are not measured, by kind of sentence and what the receiver calls them."""
     clock_offsets: list[float] = field(default_factory=list)
-    times: defaultdict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
-    """Times of every intact sentence by address."""
+    used: int = 0
+    """Readings."""
+    invalid: int = 0
+    """Readings that the instrument calls invalid."""
 
-    def count(self, counter: Counter[str], address: str) -> str:
-        """Count an address, or one of the many others; return what it was counted as."""
-        name = address if address in counter or len(counter) < MOST_KINDS else OTHER_KINDS
-        counter[name] += 1
-        return name
+    def count(self, counter: Counter[str], addresses: Iterable[str]) -> dict[str, str]:
+        """Count addresses, each or as one of the many others; return what they were counted as."""
+        names: dict[str, str] = {}
+        for address, times in Counter(addresses).items():
+            name = address if address in counter or len(counter) < MOST_KINDS else OTHER_KINDS
+            counter[name] += times
+            names[address] = name
+        return names
 
 
-Line = tuple[int, Stamp | None, str, str, str]
-"""Number of the line, from 1; time beside the sentence; name of the instrument, empty when none is given;
-address, such as ``GPGGA``; the intact sentence, from ``$`` to the checksum."""
+SENTENCE = np.dtype(
+    [("line", int), ("begin", int), ("end", int), ("checksum", int), ("stamp_s", float), ("dated", bool)]
+)
+"""Of a sentence: the number of its line, from 1; its place, from the address to the checksum; the checksum
+that is written, negative without one; the time beside it, NaN without one, and whether that has a date (UTC,
+s since 1970, else s after midnight)."""
+
+
+class Sentences(NamedTuple):
+    """n intact sentences of successive lines.
+
+    Attributes
+    ----------
+    block : Block
+        In which they stand.
+    rows : ndarray of `SENTENCE`, shape (n,)
+        Their places and stamps.
+    sources : list of str
+        Name of the instrument, empty when none is given.
+    addresses : list of str
+        Such as ``GPGGA``.
+    """
+
+    block: Block
+    rows: np.ndarray
+    sources: list[str]
+    addresses: list[str]
 
 
 def looks_like_nmea(text: str) -> bool:
@@ -77,56 +105,80 @@ def looks_like_nmea(text: str) -> bool:
     return _SENTENCE_START.search(text, 0, 8192) is not None
 
 
-def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
-    """Yield the intact sentences in the order in which they stand; count the others."""
-    lines = text.split("\n")
-    stamps = StampReader(
-        bool(day_comes_first(_before(line) for line in lines[:_LINES_LOOKED_AT] if "/" in line))
+def intact_sentences(text: str, tally: Tally) -> Iterator[Sentences]:
+    """Yield blocks of the intact sentences in the order in which they stand; count the others."""
+    head = text.split("\n", _LINES_LOOKED_AT)[:_LINES_LOOKED_AT]
+    stamps = StampReader(bool(day_comes_first(_before(line) for line in head if "/" in line)))
+    begin, number = 0, 1
+    while begin < len(text):
+        end = text.rfind("\n", begin, begin + _BLOCK) + 1 or text.find("\n", begin) + 1 or len(text)
+        lines = text[begin:end]
+        if len(lines) > _BLOCK:  # one line
+            lines = f"{lines.strip()[: LONGEST_LINE + 1]}\n"
+        yield _intact(Block(lines), number, stamps, tally)
+        begin, number = end, number + lines.count("\n")
+
+
+def _intact(block: Block, first: int, stamps: StampReader, tally: Tally) -> Sentences:
+    """Sentences of a block whose first line has a number; those with a wrong checksum are left out."""
+    lines = lines_of(block)
+    stamp_s = iso_seconds(block.letters, lines["begin"], lines["mark"])
+    regular = lines["plain"] & (lines["star"] + 3 == lines["end"])
+    regular &= (lines["mark"] == lines["begin"]) | ~np.isnan(stamp_s)
+    row, odd = np.flatnonzero(regular), np.flatnonzero(~regular & (lines["begin"] < lines["end"]))
+    others = list(_others(block.text, zip(odd.tolist(), lines[odd].tolist(), strict=True), stamps, tally))
+    tally.lines += row.size
+    rows = np.empty(row.size + len(others), SENTENCE)
+    plain = lines[row]
+    columns = row, plain["mark"] + 1, plain["star"], plain["checksum"], stamp_s[row], True
+    for name, column in zip(SENTENCE.names or (), columns, strict=True):
+        rows[name][: row.size] = column
+    rows[row.size :] = [values for _, values in others]
+    sources = [*repeat("", row.size), *(source for source, _ in others)]
+    order = np.argsort(rows["line"], kind="stable")
+    rows = rows[order]
+    rows["line"] += first
+    addresses = block.texts(
+        rows["begin"], np.minimum(block.next_of(block.commas, rows["begin"]), rows["end"])
     )
-    sums, end = _running_sums(text), -1
-    for number, raw in enumerate(lines, start=1):
-        begin, end = end + 1, end + 1 + len(raw)
-        line = raw.strip()
-        if not line or line.startswith("#"):
-            continue
-        tally.lines += 1
-        fields = None if len(line) > LONGEST_LINE else _split(line)
-        if fields is None:
-            tally.unparsable += 1
-            continue
-        before, sentences, after = fields
-        try:
-            stamp, rest = stamps.read(before[-LONGEST_STAMP:]) if before else (None, "")
-            if stamp is None and after:
-                stamp, _ = stamps.read(after[:LONGEST_STAMP])
-        except ValueError:
-            tally.unparsable += 1
-            continue
-        source = _source(rest) if rest else ""
-        if line is not raw:
-            begin += raw.index(line)
-        for place, address, sentence, checksum in sentences:
-            first = begin + place + 1
-            if checksum is None:
-                tally.without_checksum += 1
-            elif _exclusive_or(sentence, sums, first) != int(checksum, 16):
-                tally.count(tally.bad, address)
-                tally.first_bad_line = tally.first_bad_line or number
+    sums = np.append(np.uint32(0), np.bitwise_xor.accumulate(block.letters))
+    proven = rows["checksum"] >= 0
+    wrong = proven & (sums[rows["end"]] ^ sums[rows["begin"]] != rows["checksum"])
+    tally.without_checksum += int(np.count_nonzero(~proven))
+    if wrong.any():
+        tally.count(tally.bad, compress(addresses, wrong))
+        tally.first_bad_line = tally.first_bad_line or int(rows["line"][wrong.argmax()])
+        rows, order, addresses = rows[~wrong], order[~wrong], list(compress(addresses, ~wrong))
+    return Sentences(block, rows, [sources[row] for row in order.tolist()], addresses)
+
+
+def _others(
+    text: str, lines: Iterable[tuple[int, tuple[Any, ...]]], stamps: StampReader, tally: Tally
+) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """Instruments and rows of the lines that hold more than an ISO 8601 stamp and one sentence."""
+    for line, (begin, end, plain, mark, star, checksum) in lines:
+        if plain:
+            before, sentences, after = text[begin:mark], [(mark + 1, star, checksum)], text[star + 3 : end]
+        else:
+            content = text[begin:end].lstrip()
+            begin, content = end - len(content), content.rstrip()
+            if not content or content[0] == "#":
                 continue
-            yield number, stamp, source, address, sentence
-
-
-def _running_sums(text: str) -> bytes:
-    """Exclusive or of all characters before each place: two of them give that of any sentence."""
-    characters = np.frombuffer(text.encode("latin-1", "replace"), np.uint8)
-    return b"\0" + np.bitwise_xor.accumulate(characters).tobytes()
-
-
-def _exclusive_or(sentence: str, sums: bytes, first: int) -> int:
-    """Of the characters between ``$`` and ``*``, the first of which stands at a place of the text."""
-    if not sentence.isascii():  # the sums know no letter beyond Latin-1
-        return reduce(xor, map(ord, sentence[1:-3]), 0)
-    return sums[first] ^ sums[first + len(sentence) - 4]
+            before, sentences, after = _split(content, begin)
+        tally.lines += 1
+        stamp, rest = None, ""
+        try:
+            if before:
+                stamp, rest = stamps.read(before[-LONGEST_STAMP:])
+            if stamp is None and after:
+                stamp, _ = stamps.read(after.rstrip()[:LONGEST_STAMP])
+        except ValueError:
+            sentences = []
+        tally.unparsable += not sentences
+        source = _source(rest) if rest else ""
+        seconds, dated = stamp or (math.nan, True)
+        for sentence in sentences:
+            yield source, (line, *sentence, seconds, dated)
 
 
 def _before(line: str) -> str:
@@ -138,39 +190,36 @@ def _first_start(line: str) -> int:
     return min(starts, default=-1)
 
 
-def _split(line: str) -> tuple[str, list[tuple[int, str, str, str | None]], str] | None:
-    """Text before, (place, address, sentence, checksum) of each sentence, text behind; None without one.
+def _split(line: str, place: int) -> tuple[str, list[tuple[int, int, int]], str]:
+    """Text before, (begin, end, checksum) of each sentence of a line that stands at a place, text behind.
 
     Of several sentences run together, one without a checksum was cut off and is left out.
     """
-    if plain := _PLAIN.fullmatch(line):
-        before, sentence, address, checksum, after = plain.groups()
-        return before, [(len(before), address, sentence, checksum)], after
     first = _first_start(line)
-    if first < 0:
-        return None
+    if first < 0 or len(line) > LONGEST_LINE:
+        return "", [], ""
     parts = re.split("[$!]", line[first:])[1:]
-    position, fields, after = first, [], ""
+    begin, sentences, after = place + first + 1, list[tuple[int, int, int]](), ""
     for part in parts:
-        sentence = _sentence(line[position] + part, alone=len(parts) == 1)
-        if sentence is not None:
-            fields.append((position, *sentence[:3]))
-            after = sentence[3]
-        position += 1 + len(part)
-    return (line[:first], fields, after) if fields else None
+        found = _sentence(part, alone=len(parts) == 1)
+        if found is not None:
+            size, checksum, after = found
+            sentences.append((begin, begin + size, checksum))
+        begin += 1 + len(part)
+    return (line[:first] if sentences else ""), sentences, after
 
 
-def _sentence(text: str, alone: bool) -> tuple[str, str, str | None, str] | None:
-    """Address, sentence, checksum and the text behind it; None when it makes no sense."""
-    address, comma, _ = text[1:13].partition(",")
+def _sentence(text: str, alone: bool) -> tuple[int, int, str] | None:
+    """Length from the address to the checksum, checksum, and the text behind it; None without sense."""
+    address, comma, _ = text[:12].partition(",")
     if not comma or _ADDRESS.fullmatch(address) is None:
         return None
     body, star, rest = text.partition("*")
     if not star:
-        return (address, body.rstrip(_QUOTES), None, "") if alone else None
+        return (len(body.rstrip(_QUOTES)), -1, "") if alone else None
     if _CHECKSUM.match(rest) is None:
         return None
-    return address, f"{body}*{rest[:2]}", rest[:2], rest[2:]
+    return len(body), int(rest[:2], 16), rest[2:]
 
 
 def _source(rest: str) -> str:

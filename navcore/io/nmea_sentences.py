@@ -1,296 +1,315 @@
 """The sentences that are used, NMEA 0183 and makers' own, decoded to SI by the places of their fields.
 
-A decoder returns a `Reading` or raises ValueError when the fields make no sense; an instrument's own
-"invalid" gives a reading with ``valid`` False.
+Sentences of one kind are decoded together, field by field: what is not given is NaN, what makes no sense
+is infinite. An instrument's own "invalid" gives a reading with ``valid`` False.
 """
 
 import math
-import re
+from collections import defaultdict
 from collections.abc import Callable
-from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from navcore.foundation.units import DEG, KNOT
-from navcore.io.stamps import midnight
+from navcore.io import nmea_values as value
+from navcore.io.decimals import decimals
+from navcore.io.nmea_lines import Sentences
 
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
-_NOTHING = (*(None,) * 5, True)
-_LEFT_OUT = [""] * 12
-_TIME = re.compile(r"(?:[01]\d|2[0-3])[0-5]\d[0-5]\d(?:\.\d*)?")
-_DEGREES = re.compile(r"(\d+)(\d\d\.\d+)")
-_remembered = lru_cache(maxsize=4096)
-"""Fields repeat: a second stands in several sentences, and instruments round."""
 _QUALITIES = {"6": "dead-reckoned", "7": "manual", "8": "simulated"}
-_MODES = {"E": "dead-reckoned", "M": "manual", "S": "simulated"}
 
 
-class Reading(NamedTuple):
-    """Reading of one sentence; None where it holds nothing.
+READING = np.dtype(
+    [("used", bool), ("sensible", bool), ("invalid", bool), ("time_of_day", float), ("day", float)]
+)
+"""Of a sentence: whether it is of a kind that is decoded; whether its fields make sense; whether the receiver
+calls the whole of it invalid (nothing else is filled in then); its own UTC, s after midnight, and UTC
+midnight of its own date, s since 1970; NaN without."""
+
+
+class Readings(NamedTuple):
+    """Readings of n sentences.
 
     Attributes
     ----------
-    time_of_day : float
-        Its own UTC, s after midnight.
-    day : float
-        UTC midnight of its own date, s since 1970.
-    position : tuple
-        Latitude, longitude (rad), height above the ellipsoid (m, NaN if not given).
-    velocity : tuple
-        E, N over the ground, m/s.
-    water, ground : tuple
-        Starboard, forward speed (m/s) and whether the log calls it valid.
-    heading : float
-        rad, from true north.
-    valid : bool
-        False when the receiver calls the whole sentence invalid (nothing else is filled in then).
-    doubt : str
-        What the receiver calls a fix that it did not measure: dead-reckoned, manual, simulated; else empty.
+    rows : ndarray of `READING`, shape (n,)
+        Sense and time of each.
+    quantities : list of (str, ndarray, ndarray)
+        Of each kind: which of the sentences hold a quantity, shape (m,), and its values, shape (m, k).
+        ``position``: latitude, longitude (rad), height above the ellipsoid (m, NaN if not given).
+        ``velocity``: E, N over the ground, m/s. ``water``, ``ground``: starboard, forward speed (m/s) and
+        whether the log calls it valid. ``heading``: rad, from true north.
+    doubts : dict
+        By sentence: its address, and what the receiver calls a fix that it did not measure (dead-reckoned,
+        manual, simulated).
     """
 
-    time_of_day: float | None = None
-    day: float | None = None
-    position: tuple[float, float, float] | None = None
-    velocity: tuple[float, float] | None = None
-    water: tuple[float, float, bool] | None = None
-    ground: tuple[float, float, bool] | None = None
-    heading: float | None = None
-    valid: bool = True
-    doubt: str = ""
-
-    @property
-    def says_nothing(self) -> bool:
-        """Whether it holds no more than a time."""
-        return self[2:8] == _NOTHING
+    rows: np.ndarray
+    quantities: list[tuple[str, np.ndarray, np.ndarray]]
+    doubts: dict[int, tuple[str, str]]
 
 
-def _number(value: str, low: float, high: float) -> float | None:
-    """Value of an optional numeric field; ValueError when out of range or no number."""
-    if value == "":
-        return None
-    number = float(value)
-    if not low <= number <= high:
-        raise ValueError(f"{number} is not within {low}..{high}")
-    return number
+class Fields:
+    """Fields of n sentences of one kind, by column; those that a sentence leaves out are empty.
+
+    Parameters
+    ----------
+    sentences : Sentences
+        Among which they are.
+    rows : ndarray of int, shape (n,)
+        Which they are.
+
+    Attributes
+    ----------
+    count : ndarray of int, shape (n,)
+        How many each sentence has.
+    """
+
+    def __init__(self, sentences: Sentences, rows: np.ndarray) -> None:
+        self._block, begins = sentences.block, sentences.rows["begin"][rows]
+        self._ends = sentences.rows["end"][rows]
+        self._stops = np.append(self._block.commas, self._block.letters.size)
+        self._first = np.searchsorted(self._block.commas, begins)
+        self.count = np.searchsorted(self._block.commas, self._ends) - self._first
+
+    def _places(self, place: int) -> tuple[np.ndarray, np.ndarray]:
+        """Where the fields begin and end."""
+        begins, ends = (
+            np.minimum(self._stops.take(self._first + place + k, mode="clip") + 1 - k, self._ends)
+            for k in (0, 1)
+        )
+        return begins, ends
+
+    def texts(self, place: int) -> list[str]:
+        """Fields at a place behind the address."""
+        return self._block.texts(*self._places(place))
+
+    def are(self, place: int, text: str) -> np.ndarray:
+        """Whether the fields at a place are this text."""
+        begins, ends = self._places(place)
+        same = ends - begins == len(text)
+        for k, letter in enumerate(text):
+            same &= self._block.ascii(begins + k) == ord(letter)
+        return same
+
+    def of(self, read: Callable[..., float], *places: int) -> np.ndarray:
+        """Values of the fields at some places."""
+        return np.fromiter(map(read, *(self.texts(place) for place in places)), float, self.count.size)
+
+    def numbers(self, place: int, low: float, high: float) -> np.ndarray:
+        """Optional numbers within a range."""
+        begins, ends = self._places(place)
+        numbers = decimals(self._block.letters, begins, ends)
+        for row in np.flatnonzero(np.isnan(numbers) & (begins < ends)).tolist():
+            numbers[row] = value.number(self._block.text[begins[row] : ends[row]])
+        return np.where((numbers < low) | (numbers > high), math.inf, numbers)
+
+    def speeds(self, place: int, unit: float = KNOT) -> np.ndarray:
+        """Optional speeds, m/s."""
+        return self.numbers(place, -_FASTEST / unit, _FASTEST / unit) * unit
+
+    def headings(self, place: int) -> np.ndarray:
+        """Optional headings in [0, 2 pi), rad."""
+        degrees = self.numbers(place, 0.0, 360.0)
+        return (np.where(degrees == 360.0, 0.0, degrees) + 0.0) * DEG
+
+    def angles(self, place: int, positive: str, negative: str, most: float) -> np.ndarray:
+        """Latitudes or longitudes, ``dddmm.mmmm`` and the side in the next field, rad."""
+        begins, ends = self._places(place)
+        minutes = self._block.next_of(self._block.points, begins) - 2
+        plain = (minutes > begins) & (minutes + 3 < ends)
+        for where in (begins, minutes):
+            plain &= self._block.ascii(where) - np.uint32(ord("0")) < 10
+        whole = decimals(self._block.letters, begins, minutes)
+        degrees = whole + decimals(self._block.letters, minutes, ends) / 60.0
+        for row in np.flatnonzero(~plain | np.isnan(degrees)).tolist():
+            degrees[row] = value.degrees(self._block.text[begins[row] : ends[row]])
+        sides = self.are(place + 1, positive), self.are(place + 1, negative)
+        signed = np.where(sides[0], degrees, -degrees) * DEG
+        return np.where((degrees <= most) & (sides[0] | sides[1]), signed, math.inf)
 
 
-@_remembered
-def _speed(value: str, unit: float = KNOT) -> float | None:
-    number = _number(value, -_FASTEST / unit, _FASTEST / unit)
-    return None if number is None else number * unit
+def _place(fields: Fields, first: int, height: np.ndarray | float = math.nan) -> np.ndarray:
+    """Position of both angles with their sides, and the height."""
+    latitude = fields.angles(first, "N", "S", 90.0)
+    longitude = fields.angles(first + 2, "E", "W", 180.0)
+    return np.column_stack([latitude, longitude, np.broadcast_to(height, latitude.shape)])
 
 
-@_remembered
-def _heading(value: str) -> float | None:
-    degrees = _number(value, 0.0, 360.0)
-    return None if degrees is None else (degrees % 360.0) * DEG
+def _height(fields: Fields, separation: int) -> np.ndarray:
+    """Height above the ellipsoid of the altitude and the geoid's separation, m."""
+    above, geoid = fields.numbers(8, -1e4, 1e5), fields.numbers(separation, -200.0, 200.0)
+    return np.where(np.isinf(geoid), geoid, above + _or_zero(geoid))
 
 
-def _over_ground(course: str, knots: str, kmph: str = "") -> tuple[float, float] | None:
+def _or_zero(values: np.ndarray) -> np.ndarray:
+    return np.where(np.abs(values) > 0.0, values, 0.0)
+
+
+def _speed(fields: Fields, knots: int, kmph: int) -> np.ndarray:
+    """Speed in knots, or in km/h where that is not given."""
+    speed = fields.speeds(knots)
+    return np.where(np.isnan(speed), fields.speeds(kmph, _KMPH), speed)
+
+
+def _over_ground(fields: Fields, course: int, speed: np.ndarray) -> np.ndarray:
     """East and north velocity of course and speed; a standing vessel has no course."""
-    speed = _speed(knots)
-    speed = _speed(kmph, _KMPH) if speed is None else speed
-    angle = _heading(course)
-    if speed is None or (angle is None and speed != 0.0):
-        return None
-    angle = angle or 0.0
-    return speed * math.sin(angle), speed * math.cos(angle)
+    angle = fields.headings(course)
+    senseless = np.isinf(angle) | np.isinf(speed)
+    angles = np.where(senseless | (np.isnan(angle) & (speed == 0.0)), 0.0, angle).tolist()
+    velocity = np.column_stack([list(map(math.sin, angles)), list(map(math.cos, angles))])
+    velocity *= np.where(senseless, 0.0, speed)[:, None]
+    velocity[senseless] = math.inf
+    return velocity
 
 
-def _axes(longitudinal: str, transverse: str, status: str) -> tuple[float, float, bool] | None:
+def _axes(fields: Fields, first: int) -> np.ndarray:
     """Speeds along the ship's axes; a single-axis log has no transverse speed."""
-    forward = _speed(longitudinal)
-    if status != "A" or forward is None:
-        return None if forward is None and status == "" else (0.0, 0.0, False)
-    return _speed(transverse) or 0.0, forward, True
+    forward, transverse = fields.speeds(first), fields.speeds(first + 1)
+    given, measured = ~np.isnan(forward), fields.are(first + 2, "A")
+    axes = np.column_stack([_or_zero(transverse), forward, np.ones_like(forward)])
+    axes[~(given & measured)] = 0.0
+    axes[np.isinf(forward)] = math.inf
+    axes[~given & fields.are(first + 2, "")] = math.nan
+    return axes
 
 
-def _vbw(fields: list[str]) -> Reading:
-    return Reading(water=_axes(*fields[:3]), ground=_axes(*fields[3:6]))
+def _needed(heading: np.ndarray) -> np.ndarray:
+    return np.where(np.isnan(heading), math.inf, heading)
 
 
-def _vhw(fields: list[str]) -> Reading:
-    forward = _speed(fields[4]) if fields[4] else _speed(fields[6], _KMPH)
-    return Reading(water=None if forward is None else (0.0, forward, True), heading=_heading(fields[0]))
+Decoded = dict[str, Any]
+"""By name: values of the fields, shape (n,) or (n, k), ``valid`` and ``doubt``; see `Readings`."""
+Decoder = Callable[[Fields], Decoded]
 
 
-def _vtg(fields: list[str]) -> Reading:
-    if fields[8] == "N":
-        return Reading(valid=False)
-    return Reading(velocity=_over_ground(fields[0], fields[4], fields[6]), doubt=_doubt(fields[8]))
+def _vbw(fields: Fields) -> Decoded:
+    return {"water": _axes(fields, 0), "ground": _axes(fields, 3)}
 
 
-def _seconds(field: str) -> float:
-    """Time ``hhmmss`` or ``hhmmss.sss``, s."""
-    return int(field[:2]) * 3600.0 + int(field[2:4]) * 60.0 + float(field[4:])
+def _vhw(fields: Fields) -> Decoded:
+    forward = _speed(fields, 4, 6)
+    water = np.column_stack([np.where(np.isnan(forward), math.nan, 0.0), forward, np.ones_like(forward)])
+    return {"water": water, "heading": fields.headings(0)}
 
 
-@_remembered
-def _time_of_day(field: str) -> float:
-    """UTC of a standard sentence, s: a time that a clock can show."""
-    if _TIME.fullmatch(field) is None:
-        raise ValueError(f"{field} is no time")
-    return _seconds(field)
+def _vtg(fields: Fields) -> Decoded:
+    velocity = _over_ground(fields, 0, _speed(fields, 4, 6))
+    return {"valid": ~fields.are(8, "N"), "velocity": velocity, "doubt": map(value.doubt, fields.texts(8))}
 
 
-@_remembered
-def _day(field: str) -> float:
-    """UTC midnight of ``ddmmyy``, s since 1970."""
-    if len(field) != 6 or not field[4:].isdigit():
-        raise ValueError(f"{field} is no date")
-    return midnight(int(field[4:]), int(field[2:4]), int(field[:2]))
+def _rmc(fields: Fields) -> Decoded:
+    return {
+        "valid": fields.are(1, "A"),
+        "time_of_day": fields.of(value.time_of_day, 0),
+        "day": fields.of(value.day, 8),
+        "position": _place(fields, 2),
+        "velocity": _over_ground(fields, 7, fields.speeds(6)),
+        "doubt": map(value.doubt, fields.texts(11)),
+    }
 
 
-def _angle(field: str, side: str, positive: str, negative: str, most: float) -> float:
-    """Degrees and minutes, ``dddmm.mmmm``, in rad."""
-    parts = _DEGREES.fullmatch(field)
-    degrees = int(parts[1]) + float(parts[2]) / 60.0 if parts else 0.0 if field == "0" else math.inf
-    if side not in (positive, negative) or degrees > most:
-        raise ValueError("no position")
-    return (degrees if side == positive else -degrees) * DEG
+def _gga(fields: Fields) -> Decoded:
+    quality = fields.of(value.quality, 5)
+    return {
+        "valid": quality != 0.0,
+        "time_of_day": np.where(np.isinf(quality), math.inf, fields.of(value.time_of_day, 0)),
+        "position": _place(fields, 1, _height(fields, 10)),
+        "doubt": (_QUALITIES.get(field, "") for field in fields.texts(5)),
+    }
 
 
-@_remembered
-def _place(lat: str, north: str, lon: str, east: str) -> tuple[float, float]:
-    """Latitude and longitude of both with their sides."""
-    return _angle(lat, north, "N", "S", 90.0), _angle(lon, east, "E", "W", 180.0)
+def _hdt(fields: Fields) -> Decoded:
+    return {"heading": _needed(fields.headings(0))}
 
 
-@_remembered
-def _height(altitude: str, separation: str) -> float:
-    """Height above the ellipsoid, m; NaN where it is not given."""
-    above, geoid = _number(altitude, -1e4, 1e5), _number(separation, -200.0, 200.0)
-    return math.nan if above is None else above + (geoid or 0.0)
-
-
-@_remembered
-def _doubt(modes: str) -> str:
-    """What the letters of a receiver's mode, one a system, say of the fix when all agree."""
-    said = set(modes) - {"N"}
-    return _MODES.get(said.pop(), "") if len(said) == 1 else ""
-
-
-def _rmc(fields: list[str]) -> Reading:
-    if fields[1] != "A":
-        return Reading(valid=False)
-    return Reading(
-        time_of_day=_time_of_day(fields[0]),
-        day=_day(fields[8]) if fields[8] else None,
-        position=(*_place(*fields[2:6]), math.nan),
-        velocity=_over_ground(fields[7], fields[6]),
-        doubt=_doubt(fields[11]),
-    )
-
-
-def _gga(fields: list[str]) -> Reading:
-    quality = fields[5]
-    if not quality or int(quality) == 0:
-        return Reading(valid=False)
-    position = *_place(*fields[1:5]), _height(fields[8], fields[10])
-    doubt = _QUALITIES.get(quality, "")
-    return Reading(time_of_day=_time_of_day(fields[0]), position=position, doubt=doubt)
-
-
-def _hdt(fields: list[str]) -> Reading:
-    return _needed_heading(fields[0])
-
-
-def _gll(fields: list[str]) -> Reading:
+def _gll(fields: Fields) -> Decoded:
     """Place, time and status; the oldest form has the place alone, which does not say that it is invalid."""
-    oldest = len(fields) == 4 + len(_LEFT_OUT)
-    if fields[5] != "A" and not oldest:
-        return Reading(valid=False)
-    time_s = None if oldest else _time_of_day(fields[4])
-    position = *_place(*fields[:4]), math.nan
-    return Reading(time_of_day=time_s, position=position, doubt=_doubt(fields[6]))
+    oldest = fields.count == 4
+    return {
+        "valid": oldest | fields.are(5, "A"),
+        "time_of_day": np.where(oldest, math.nan, fields.of(value.time_of_day, 4)),
+        "position": _place(fields, 0),
+        "doubt": map(value.doubt, fields.texts(6)),
+    }
 
 
-def _gns(fields: list[str]) -> Reading:
-    if not set(fields[5] or "N") - {"N"}:
-        return Reading(valid=False)
-    position = *_place(*fields[1:5]), _height(fields[8], fields[9])
-    return Reading(time_of_day=_time_of_day(fields[0]), position=position, doubt=_doubt(fields[5]))
+def _gns(fields: Fields) -> Decoded:
+    return {
+        "valid": fields.of(value.measures, 5) != 0.0,
+        "time_of_day": fields.of(value.time_of_day, 0),
+        "position": _place(fields, 1, _height(fields, 9)),
+        "doubt": map(value.doubt, fields.texts(5)),
+    }
 
 
-def _zda(fields: list[str]) -> Reading:
-    return Reading(
-        time_of_day=_time_of_day(fields[0]), day=midnight(int(fields[3]), int(fields[2]), int(fields[1]))
-    )
+def _zda(fields: Fields) -> Decoded:
+    return {"time_of_day": fields.of(value.time_of_day, 0), "day": fields.of(value.date, 1, 2, 3)}
 
 
-def _hdg(fields: list[str]) -> Reading:
+def _hdg(fields: Fields) -> Decoded:
     """Magnetic heading with its deviation and variation; without the variation it is no true heading."""
-    heading, deviation_deg, deviation_side, variation_deg, variation_side = fields[:5]
-    compass, variation = _heading(heading), _number(variation_deg, 0.0, 180.0)
-    if compass is None or variation is None or variation_side not in ("E", "W"):
-        return Reading()
-    deviation = _number(deviation_deg, 0.0, 180.0) or 0.0
-    east = variation * (1.0 if variation_side == "E" else -1.0)
-    east += deviation * (-1.0 if deviation_side == "W" else 1.0)
-    return Reading(heading=(compass + east * DEG) % (2.0 * math.pi))
+    magnetic, east, west = fields.headings(0), fields.are(4, "E"), fields.are(4, "W")
+    deviation, variation = fields.numbers(1, 0.0, 180.0), fields.numbers(3, 0.0, 180.0)
+    given = ~np.isnan(magnetic) & ~np.isnan(variation) & (east | west)
+    senseless = np.isinf(magnetic) | np.isinf(variation) | (given & np.isinf(deviation))
+    turned = _or_zero(deviation) * np.where(fields.are(2, "W"), -1.0, 1.0)
+    with np.errstate(invalid="ignore"):  # of what makes no sense
+        heading = (magnetic + (variation * np.where(east, 1.0, -1.0) + turned) * DEG) % (2.0 * math.pi)
+    return {"heading": np.where(senseless, math.inf, np.where(given, heading, math.nan))}
 
 
-def _ths(fields: list[str]) -> Reading:
-    """True heading and status: ``THS,77.52,A`` (V: invalid)."""
-    if fields[1] == "V":
-        return Reading(valid=False)
-    return _needed_heading(fields[0])
+def _ths(fields: Fields) -> Decoded:
+    """True heading and status, which must not be left out: ``THS,77.52,A`` (V: invalid)."""
+    heading = np.where(fields.count < 2, math.inf, _needed(fields.headings(0)))
+    return {"valid": ~fields.are(1, "V"), "heading": heading}
 
 
-def _pashr(fields: list[str]) -> Reading:
+def _pashr(fields: Fields) -> Decoded:
     """Attitude of Applanix and others: ``PASHR,hhmmss.sss,heading,T,roll,pitch,...``; others say nothing."""
-    time = fields[0]
-    if len(fields) < 5 or fields[2] != "T" or not time[:6].isdigit():
-        return Reading()
-    return Reading(time_of_day=_seconds(time), heading=_heading(fields[1]))
+    time_s = fields.of(value.makers_time, 0)
+    attitude = (fields.count >= 5) & fields.are(2, "T") & ~np.isnan(time_s)
+    return {
+        "time_of_day": np.where(attitude, time_s, math.nan),
+        "heading": np.where(attitude, fields.headings(1), math.nan),
+    }
 
 
-def _psxn(fields: list[str]) -> Reading:
+def _psxn(fields: Fields) -> Decoded:
     """Attitude of a Seapath: ``PSXN,23,roll,pitch,heading,heave``; its other messages say nothing."""
-    return _needed_heading(fields[3]) if fields[0] == "23" else Reading()
+    return {"heading": np.where(fields.are(0, "23"), _needed(fields.headings(3)), math.nan)}
 
 
-def _prdid(fields: list[str]) -> Reading:
+def _prdid(fields: Fields) -> Decoded:
     """Attitude as RD Instruments has it: ``PRDID,pitch,roll,heading``."""
-    return _needed_heading(fields[2])
+    return {"heading": _needed(fields.headings(2))}
 
 
-def _needed_heading(value: str) -> Reading:
-    heading = _heading(value)
-    if heading is None:
-        raise ValueError("no heading")
-    return Reading(heading=heading)
-
-
-_STANDARD: dict[str, Callable[[list[str]], Reading]] = {
+_STANDARD: dict[str, Decoder] = {
     "GGA": _gga,
     "GLL": _gll,
     "GNS": _gns,
     "HDG": _hdg,
     "HDT": _hdt,
     "RMC": _rmc,
+    "THS": _ths,
     "VBW": _vbw,
     "VHW": _vhw,
     "VTG": _vtg,
     "ZDA": _zda,
 }
-"""Decoders of kinds whose last fields an older talker may leave out: these are empty then."""
-_WHOLE: dict[str, Callable[[list[str]], Reading]] = {"THS": _ths}
-"""Decoders of kinds that must have all their fields."""
-_MAKERS: dict[str, Callable[[list[str]], Reading]] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
+"""Decoders by the last letters of the address; an older talker may leave out the last fields."""
+_MAKERS: dict[str, Decoder] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
 """Decoders of makers' own sentences, by the whole address."""
-KINDS = ", ".join((*sorted(_STANDARD | _WHOLE), *_MAKERS))
+KINDS = ", ".join((*sorted(_STANDARD), *_MAKERS))
 """Sentences that can be read, for messages."""
 
 
-@lru_cache(maxsize=1024)
-def _decoder(address: str) -> tuple[Callable[[list[str]], Reading], list[str]] | None:
-    """Decoder of a used kind, and the fields that may be left out; None for other kinds."""
-    kind = address[2:] if len(address) == 5 and address[0] != "P" else ""
-    if kind in _STANDARD:
-        return _STANDARD[kind], _LEFT_OUT
-    found = _MAKERS.get(address) or _WHOLE.get(kind)
-    return (found, []) if found else None
+def _decoder(address: str) -> Decoder | None:
+    standard = len(address) == 5 and address[0] != "P"
+    return _STANDARD.get(address[2:]) if standard else _MAKERS.get(address)
 
 
 def is_used(address: str) -> bool:
@@ -298,14 +317,38 @@ def is_used(address: str) -> bool:
     return _decoder(address) is not None
 
 
-def decode(sentence: str, address: str) -> Reading | None:
-    """Reading of a sentence of a used kind; None for other kinds and for nonsense in its fields."""
-    found = _decoder(address)
-    if found is None:
-        return None
-    decoder, left_out = found
-    fields = sentence.partition("*")[0].split(",")[1:]
-    try:
-        return decoder(fields + left_out) if fields else None
-    except (ValueError, TypeError, LookupError, OverflowError):
-        return None
+def decode(sentences: Sentences) -> Readings:
+    """Readings of the sentences of used kinds."""
+    nothing = np.array((False, True, False, math.nan, math.nan), READING)
+    readings = Readings(np.full(len(sentences.addresses), nothing), [], {})
+    decoders = {address: _decoder(address) for address in set(sentences.addresses)}
+    rows_of: defaultdict[Decoder | None, list[int]] = defaultdict(list)
+    for row, address in enumerate(sentences.addresses):
+        rows_of[decoders[address]].append(row)
+    for decoder, rows in rows_of.items():
+        if decoder is not None:
+            fields = Fields(sentences, which := np.array(rows))
+            _fill(readings, sentences.addresses, which, fields.count > 0, decoder(fields))
+    return readings
+
+
+def _fill(
+    readings: Readings, addresses: list[str], rows: np.ndarray, sensible: np.ndarray, decoded: Decoded
+) -> None:
+    """Fill in what was decoded of the sentences of one kind."""
+    valid = decoded.pop("valid", np.ones(rows.size, bool))
+    doubts = decoded.pop("doubt", ())
+    columns = {name: values.reshape(rows.size, -1) for name, values in decoded.items()}
+    for values in columns.values():
+        sensible &= ~(valid & np.isinf(values).any(axis=1))
+    filled = valid & sensible
+    for name, told in (("used", True), ("sensible", sensible), ("invalid", ~valid)):
+        readings.rows[name][rows] = told
+    said = zip(rows.tolist(), doubts, filled.tolist(), strict=False)
+    readings.doubts.update((row, (addresses[row], doubt)) for row, doubt, counts in said if doubt and counts)
+    for name, values in columns.items():
+        held = filled & ~np.isnan(values[:, 0])
+        if name in ("time_of_day", "day"):
+            readings.rows[name][rows[held]] = values[held, 0]
+        else:
+            readings.quantities.append((name, rows[held], values[held]))
