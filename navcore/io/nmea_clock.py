@@ -152,9 +152,11 @@ def _moment(key: str, fields: str) -> float | None:
             day, month, year = int(date[:2]), int(date[2:4]), int(date[4:6])
         else:
             day, month, year = (int(part) for part in parts[date_place : date_place + 3])
-        return midnight(year, month, day) + int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
-    except (ValueError, IndexError):
+        moment = midnight(year, month, day) + int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
+        datetime.fromtimestamp(moment, UTC)
+    except (ValueError, IndexError, OverflowError):  # no calendar has it
         return None
+    return moment
 
 
 def _ahead(text: str, utc: float, position: int) -> float:

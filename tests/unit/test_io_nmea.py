@@ -163,6 +163,20 @@ def test_lines_that_make_no_sense_are_counted_and_left_out(tmp_path):
     assert recording.position is None
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "GPZDA,120001e400,29,02,2024,00,00",
+        "GPZDA,120000.00,29,02,99999999999999999999,00,00",
+        "PASHR,1200009e400,77.5,T,0.1,0.2,0.3",
+    ],
+)
+def test_a_time_that_no_calendar_has_is_left_out(tmp_path: Path, body: str) -> None:
+    recording = read_recording(write(tmp_path / "log.txt", [stamped(0, body), *vbw_lines(3)]))
+    assert recording.sources[0].unparsable == 1
+    assert recording.water is not None and recording.water.time_s[0] == pytest.approx(T0)
+
+
 def test_a_missing_checksum_is_accepted_and_said(tmp_path):
     lines = [line.rsplit("*")[0] for line in vbw_lines(3)]
     recording = read_recording(write(tmp_path / "log.txt", lines))
