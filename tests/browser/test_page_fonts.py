@@ -2,7 +2,8 @@
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -37,21 +38,31 @@ def wide(browser: Browser, chromium: Path, tmp_path_factory: pytest.TempPathFact
     launched.close()
 
 
+@pytest.fixture(scope="module")
+def opened(wide: Browser, dashboard: Served) -> Callable[[float, bool], Bench]:
+    """Pages in the wide font, one for each zoom and pointer, which stay open."""
+
+    @cache
+    def page(zoom: float, touch: bool) -> Bench:
+        context = wide.new_context(device_scale_factor=zoom, has_touch=touch)
+        return Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
+
+    return page
+
+
 @pytest.fixture
-def lettered(request: pytest.FixtureRequest, wide: Browser, dashboard: Served) -> Iterator[Bench]:
+def lettered(request: pytest.FixtureRequest, opened: Callable[[float, bool], Bench]) -> Iterator[Bench]:
     """A page in the wide font, of a window and a zoom that the test names; on a ship under way."""
     size, zoom = request.param
-    width, height = (round(px / zoom) for px in size)
-    context = wide.new_context(
-        viewport={"width": width, "height": height}, device_scale_factor=zoom, has_touch=size in TABLETS
-    )
-    bench = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
-    bench.size = width, height
+    bench = opened(zoom, size in TABLETS)
+    width, height = bench.size = round(size[0] / zoom), round(size[1] / zoom)
+    bench.page.set_viewport_size({"width": width, "height": height})
+    bench.heard()
+    bench.clean()
     bench.reset("sikuliaq-like", "Method", "Errors", selected=2)
     assert re.search(r" 1\.1[0-9]", bench.page.evaluate("schuler.state()")), "a tenth wider than Arial"
     yield bench
     assert bench.faults == []
-    context.close()
 
 
 def in_windows(*windows: tuple[tuple[int, int], float]) -> pytest.MarkDecorator:
