@@ -1,6 +1,6 @@
 """Runs all checks and tests in stages and sums them up: ``python -m tools.stages [lint | unit]``.
 
-Stages that keep one core busy each run side by side; what they print is shown when each ends.
+Stages that leave a core idle at times run side by side: each says that it begins, and is shown when it ends.
 The last line printed is ``N passed, N failed, N skipped`` over all stages; a check (ruff, basedpyright)
 counts as one test. The exit code is 1 when anything failed or when a test stage ran no test at all.
 """
@@ -59,8 +59,15 @@ STAGES = {
     "browser": ["tests/browser", "-n2", "--dist=worksteal"],
 }
 
-BESIDE = (("basedpyright", "attack"), ("extension",))
-"""Lanes that run side by side; each keeps at most one core busy, the stages of a lane one after the other."""
+BESIDE = (
+    (("attack",), ("extension",)),
+    (("browser",), ("basedpyright",)),
+)
+"""Groups of lanes that run side by side, before and after all else; the stages of a lane one after the other.
+
+Attack and extension keep one core busy each. The workers of the browser stage wait a good part of their time,
+for frames, timers and answers, in which the types are checked; the attacks are not, whose ends are timed.
+"""
 
 
 def read_counts(stage: str, report: Path, exit_code: int, seconds: float) -> Count:
@@ -125,13 +132,15 @@ def provide_browser() -> None:
     print(f"== fonts of tests/browser: {provide_fonts()}", flush=True)
 
 
-def run_beside(lanes: Iterable[Iterable[str]] = BESIDE) -> list[Count]:
+def run_beside(lanes: Iterable[Iterable[str]]) -> list[Count]:
     """Run lanes of checks and stages side by side; what each of them prints stays together."""
     printing = threading.Lock()
 
     def run_lane(names: Iterable[str]) -> list[Count]:
         counts = []
         for name in names:
+            with printing:
+                print(f"== {name} begins", flush=True)
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as out:
                 counts.append(run_check(name, out) if name in CHECKS else run_stage(name, out))
                 out.seek(0)
@@ -169,17 +178,21 @@ def main(arguments: list[str]) -> int:
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
         # Compiled before the first test, and once for all its processes.
         subprocess.run([sys.executable, "-m", "navcore.warm"], cwd=ROOT, check=True)
-        first, *others = STAGES
         if wanted == "all":
             provide_browser()
-            taken = {name for lane in BESIDE for name in lane}
+            before, after = BESIDE
+            taken = {name for lanes in BESIDE for lane in lanes for name in lane}
             counts += [run_check(name) for name in CHECKS if name not in taken]
-            counts += run_beside()
-            others = [name for name in others if name not in taken]
-        counts += [run_stage(name) for name in [first, *(others if wanted == "all" else [])]]
+            counts += run_beside(before)
+            counts += [run_stage(name) for name in STAGES if name not in taken]
+            counts += run_beside(after)
+        else:
+            counts.append(run_stage(next(iter(STAGES))))
     whole = f"{'all, from first to last':<28} {time.perf_counter() - start:8.1f} s"
-    print(f"\n{setup_times()}\n{table(counts)}\n{whole}\n\n{closing_line(counts)}", flush=True)
-    return int(any(count.failed for count in counts))
+    failing = [count.stage for count in counts if count.failed]
+    blame = f"failed: {', '.join(failing)}\n" if failing else ""
+    print(f"\n{setup_times()}\n{table(counts)}\n{whole}\n\n{blame}{closing_line(counts)}", flush=True)
+    return int(bool(failing))
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ def test_every_folder_is_in_exactly_one_stage_and_lanes_name_each_once() -> None
     taken = [part for stage in others for part in stage if not part.startswith("-")]
     left_out = [part.removeprefix("--ignore=") for part in first if part.startswith("--ignore=")]
     assert sorted(taken) == sorted(left_out) and set(CODE) <= set(first)
-    named = [name for lane in BESIDE for name in lane]
+    named = [name for lanes in BESIDE for lane in lanes for name in lane]
     assert len(set(named)) == len(named) and set(named) <= {*CHECKS, *STAGES}
 
 
