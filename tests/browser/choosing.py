@@ -17,11 +17,11 @@ class Choosing:
         """Bring tabs to the front; wait until the page holds what they show."""
         for name in names:
             title = self.said(name)
-            place, front, seen = self.page.wait_for_function("look.tab", arg=title).json_value()
-            if front:
+            tab = self.page.get_by_role("tab", name=title, exact=True, include_hidden=True)
+            if tab.get_attribute("aria-selected") == "true":
                 continue
-            if seen:
-                self.page.locator("[role=tab]").nth(place).click()
+            if tab.is_visible():
+                tab.click()
             else:
                 self.page.locator(".sb-more-tabs").select_option(label=title)
             self.heard()

@@ -242,9 +242,9 @@ class Bench(Choosing):
             session.select(selected, None)
         self.catch_up()
         self.page.wait_for_function("look.opened")
-        self.page.wait_for_function("look.bring", arg=tabs)
         self.heard()
         self.close_notices()
+        self.tab(*tabs)
 
     def show(self, **choices: object) -> None:
         """Change how the session's pictures are shown, without a click; wait until the page shows it."""
@@ -334,7 +334,8 @@ class Bench(Choosing):
                     self._marks[view] = view.gui.add_html("", order=1000)
                 self._marks[view].content = f'<div hidden data-mark="{number}"></div>'
                 view.client.flush()
-        self.page.wait_for_function("look.received", arg=number)
+        self.page.wait_for_selector(f'[data-mark="{number}"]', state="attached")
+        self.page.evaluate("look.nextFrame")
 
     def account(self) -> str:
         """What page and server hold, in lines: for the report of a failed test."""

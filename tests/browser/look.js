@@ -49,21 +49,6 @@ look.uplot = () => {
 // The server has heard of the window's size and of the tabs in front (app/shell/static/page.js).
 look.heard = () => document.querySelector('#sb-heard')?.dataset.state === schuler.state();
 
-// Place of a tab among all, whether it is in front, and whether it stands in its strip; null: there is none.
-look.tab = title => {
-  const tabs = [...document.querySelectorAll('[role=tab]')];
-  const tab = tabs.find(each => each.textContent === title);
-  return tab ? [tabs.indexOf(tab), tab.ariaSelected === 'true', tab.checkVisibility({visibilityProperty: true})] : null;
-};
-
-// Brings tabs to the front, once there are all of them.
-look.bring = titles => {
-  const tabs = titles.map(schuler.tab);
-  if (tabs.includes(undefined)) return false;
-  tabs.forEach(schuler.open);
-  return true;
-};
-
 // So many panels with results stand beside the 3D view, as wide as the layout says.
 look.laidOut = ([panels, right]) => {
   const lists = [...document.querySelectorAll('[role=tablist]')].map(l => l.getBoundingClientRect());
@@ -105,10 +90,6 @@ look.account = () => {
 
 // viser's page gives uPlot its numbers after the frame in which the rest of a message is shown.
 look.nextFrame = () => new Promise(go => requestAnimationFrame(() => setTimeout(go)));
-
-// The page holds the mark that the server has sent last, and what it sent before.
-look.received = number =>
-  document.querySelector(`[data-mark="${number}"]`) !== null && look.nextFrame().then(() => true);
 
 look.noNotices = () => {
   document.querySelectorAll('.mantine-Notification-closeButton').forEach(button => button.click());
