@@ -233,9 +233,9 @@ class Page:
 
     def front_changed(self, front: Set[str]) -> None:
         """Follow the tabs of the page that presents."""
-        missing = front - self._front
-        if missing and not self._closed:
-            self.commands.ask_page("front", "|".join(sorted(missing)))
+        # All of them: what this page has told of its own tabs may be older than what it was asked last.
+        if not self._closed:
+            self.commands.ask_page("front", "|".join(sorted(front)))
             self.client.flush()
 
     def verification_changed(self) -> None:
