@@ -1,4 +1,4 @@
-"""``python -m tools.fuzzing``: damaged recordings are read by every importer, or refused by name.
+"""``python -m tools.fuzzing``: damaged recordings and maps are read by every importer, or refused by name.
 
 Hypothesis damages good files of each format. With ``--guided`` and atheris installed, the coverage of
 `navcore.io` and `navcore.checks` guides the same damage.
@@ -7,7 +7,6 @@ Hypothesis damages good files of each format. With ``--guided`` and atheris inst
 import argparse
 import gzip
 import sys
-import tempfile
 import time
 import traceback
 import zipfile
@@ -35,16 +34,18 @@ _TOKENS = tuple(
 ) + (b"", b"\xc3\xa9", b"\xff", b"\0", b"\n", b"\r", b"\t", b" ")
 
 
-def seeds() -> list[bytes]:
-    """Small good files: NMEA 0183, tables, containers, an IMU, GPX and PSINS text."""
+def seeds(folder: Path) -> list[bytes]:
+    """Write small good files: NMEA 0183, tables with maps, containers, an IMU; GPX and PSINS text too."""
+    from navcore.checks.map_guess import write_map
     from tests import planted
 
     track, log = ({k: v[:_ROWS] for k, v in part.items()} for part in planted.ship())
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        files = [file for write, _ in planted.FORMATS.values() for file in write(folder, track, log)]
-        files.append(planted.write_imu(folder, {k: v[:_ROWS] for k, v in planted.rocking_imu().items()}))
-        found = [file.read_bytes() for file in files]
+    files = [file for write, _ in planted.FORMATS.values() for file in write(folder, track, log)]
+    files.append(planted.write_imu(folder, {k: v[:_ROWS] for k, v in planted.rocking_imu().items()}))
+    for table in [file for file in files if file.suffix == ".csv"]:
+        files.append(table.with_suffix(".map"))
+        write_map(str(table), str(files[-1]))
+    found = [file.read_bytes() for file in files]
     fixes = zip(track["lat"].tolist(), track["lon"].tolist(), strict=True)
     points = "".join(
         f'<trkpt lat="{lat}" lon="{lon}"><time>2024-05-13T09:00:{k % 60:02d}Z</time></trkpt>\n'
@@ -97,11 +98,15 @@ def _damaged(
 
 
 def read_by_all(path: Path) -> None:
-    """Check, read and preview a file by every importer; what they refuse by name is well."""
+    """Check, read and preview a file by every importer; what they refuse by name is well.
+
+    A file that is a map maps the good tables that `seeds` wrote beside it.
+    """
     from navcore.checks.file import check_file
-    from navcore.checks.imu import IMU_CHECKER
+    from navcore.checks.imu import IMU_CHECKER, check_mapped
     from navcore.checks.map_guess import preview_of
     from navcore.foundation.errors import InputError
+    from navcore.io.column_map import read_map
     from navcore.io.recording import read_recording
     from navcore.sensors.recorded_imu import read_imu
 
@@ -109,10 +114,16 @@ def read_by_all(path: Path) -> None:
     for read in (read_recording, read_imu, preview_of):
         with suppress(InputError):
             read(path)
+    with suppress(InputError):
+        column_map = read_map(path)
+        for table in path.parent.glob("*/*.csv"):
+            "\n".join(check_mapped(table, column_map).lines())
 
 
 def property_of(path: Path) -> Any:
     """Test that Hypothesis runs: each damaged file is read or refused, in time."""
+    good = path.parent / "good"
+    good.mkdir(exist_ok=True)
 
     @settings(
         max_examples=BATCH,
@@ -121,7 +132,7 @@ def property_of(path: Path) -> Any:
         report_multiple_bugs=False,
         suppress_health_check=[HealthCheck.too_slow],
     )
-    @given(content=damaged(seeds()))
+    @given(content=damaged(seeds(good)))
     def is_read_or_refused(content: bytes) -> None:
         path.write_bytes(content)
         began = time.process_time()
