@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated
@@ -80,9 +81,7 @@ def _is_scenario(file: str) -> bool:
 
 
 def _is_preset(file: str) -> bool:
-    from pathlib import Path
-
-    if Path(file).exists():
+    if os.path.exists(file):  # no name is too long for it
         return False
     from navcore.scenario.file import presets
 

@@ -76,6 +76,12 @@ def test_a_log_that_is_none(content, tmp_path, capsys):
     assert "Traceback" not in captured.err
 
 
+@pytest.mark.parametrize("name", ["a" * 3000, "a" * 300 + ".toml", "a\0b"])
+def test_a_name_that_no_file_can_have_is_refused(name, capsys):
+    assert main(["check", name]) == 2
+    assert name[:2] in capsys.readouterr().err
+
+
 def test_the_ships_log_is_described(capsys):
     files = ship()
     assert main(["check", files.log, "--json"]) == 0
