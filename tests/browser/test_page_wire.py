@@ -227,10 +227,9 @@ class Wire:
     def set(self, name: str, value: Any, *, exact: bool = True) -> Counter[str]:
         """Set a control of a field; return how many pictures of each kind changed."""
         label = self.named(box_labels(name) if exact else slider_labels(name))
-        number = self.session.run_number
-        value = words_of(name, value)
-        self.visitor.set(self.controls[label]["uuid"], value)
-        self._values[self.controls[label]["uuid"]] = value
+        number, uuid = self.session.run_number, self.controls[label]["uuid"]
+        self._values[uuid] = words_of(name, value)
+        self.visitor.set(uuid, self._values[uuid])
         eventually(lambda: self.session.run_number > number, 60.0)
         self.catch_up()
         return +self.moved

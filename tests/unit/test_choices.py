@@ -22,7 +22,8 @@ def models(base: type[BaseModel]) -> list[type[BaseModel]]:
 
 OFFERED = sorted({
     values for model in models(Parameters) for info in model.model_fields.values()
-    if model is not Requirement and (values := form.choices_of(info))
+    if model.__module__.partition(".study")[1] == "" and model is not Requirement  # no control shows these
+    and (values := form.choices_of(info))
 } | {tuple(kinds) for kinds in (NETWORKS, POLICIES, SWITCHINGS, MOTIONS)})  # fmt: skip
 
 
