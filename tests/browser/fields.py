@@ -27,7 +27,8 @@ _CHOOSERS = ("alignment", "damping", "motion", "network", "policy", "reference",
 
 def words_of(name: str, value: Any) -> Any:
     """What the control of a field shows for a value."""
-    return choice_words(value) if name in _CHOOSERS or name in _specs() else value
+    offered = isinstance(value, str) and (name in _CHOOSERS or name in _specs())
+    return str(choice_words(value)) if offered else value
 
 
 def slider_labels(name: str) -> list[str]:

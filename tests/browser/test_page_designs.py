@@ -5,6 +5,7 @@ import re
 import pytest
 
 from navcore.design.designs import designs
+from navcore.study.robust_tune import TunedOver
 from schuler_bench.jobs.designer import FrontsTask, LimitsTask
 from schuler_bench.shell.places import OVER, PLACES
 from schuler_bench.views.design.view import BUDGET_OF, CHOICES
@@ -116,6 +117,7 @@ def test_a_setting_is_tuned_over_the_points_of_the_tab_study(short: Bench) -> No
     short.button(TUNE).click()
     short.button(ACCEPT).wait_for(timeout=120_000)
     told = short.page.locator(".sb-proposal").inner_text()
+    assert isinstance(designer.result, TunedOver)
     assert f"Over {designer.result.points} points of the study the objective is at most" in told
     assert "the setting that is best here has" in told
     short.button(ACCEPT).click()

@@ -20,7 +20,6 @@ from schuler_bench.shell.page import Page
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.reports import PAGE_STATE
 from schuler_bench.views import load
-from schuler_bench.views.design.view import DesignView
 from schuler_bench.views.study.view import StudyView
 from schuler_bench.views.tune.view import TuneView
 from tests.attack.conftest import eventually
@@ -65,8 +64,8 @@ def test_a_visitor_without_our_script_gets_all_figures(dashboard: Served) -> Non
     with visit(server.port, named(dashboard, "no-script-here")) as visitor:
         visitor.wait_for(is_run, 60.0)
         kinds = [message["type"] for message in visitor.received]
-        # Tune and Study have a figure once they have found something; Design begins with its table.
-        empty = (TuneView, DesignView, StudyView)
+        # Tune and Study have a figure once they have found something.
+        empty = (TuneView, StudyView)
         plotly = [k for k in load() if k.always and k not in empty and issubclass(k, PlotlyView)]
         assert kinds.count("GuiPlotlyMessage") == len(plotly) >= 4
         assert kinds.count("GuiUplotMessage") == 4
