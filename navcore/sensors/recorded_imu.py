@@ -258,6 +258,8 @@ def _numbers(
 
 def _is_row(line: str, columns: int, separator: str | None) -> bool:
     words = line.split(separator)
+    if "_" in line or not line.isascii():  # numbers for `float`, which the reader does not take
+        return False
     try:
         return len(words) == columns and all(word.strip() and float(word) is not None for word in words)
     except ValueError:

@@ -115,3 +115,12 @@ def test_numbers_that_no_sensor_gives_are_refused(tmp_path: Path, cell: str, wan
     (tmp_path / "imu.csv").write_text("t_s,gx_rad_s,gy_rad_s,gz_rad_s,fx_mps2,fy_mps2,fz_mps2\n" + rows)
     with pytest.raises(InputError, match=wanted):
         read_imu(tmp_path / "imu.csv")
+
+
+@pytest.mark.parametrize("cell", ["2_0", "\uff12"])
+def test_a_number_of_python_alone_is_refused_in_psins_text(tmp_path: Path, cell: str) -> None:
+    """Found by fuzzing: `float` takes both, numpy's reader neither."""
+    rows = "".join(f"1 {cell if k == 3 else 2} 3 4 5 9800\n" for k in range(9))
+    (tmp_path / "psins.txt").write_text("%PSINS\n0 0 0 0 0 0\n34 108 380 0 10 9.8\n.1 .1 .1 1 1 1\n" + rows)
+    with pytest.raises(InputError, match="data line 7 is no row of 6 numbers"):
+        read_imu(tmp_path / "psins.txt")
