@@ -16,6 +16,7 @@ from schuler_bench.jobs.studier import StudyTask, require_small
 
 if TYPE_CHECKING:
     from navcore.study.model import Study
+    from navcore.study.plan import Plan
     from schuler_bench.session.session import Session
 
 PRESENT, UPLOADED = "", "uploaded"
@@ -107,6 +108,12 @@ def chosen_task(session: Session) -> StudyTask:
     InputError
         The scenario cannot be varied so, or the study is too large for a page.
     """
+    plan, present = _chosen(session)
+    return StudyTask(plan.study, plan.where, plan.scenario, present)
+
+
+def _chosen(session: Session) -> tuple[Plan, Scenario | None]:
+    """Plan of the study that is chosen, and the session's scenario where it was made of that."""
     from navcore.study.crossed import crossed
     from navcore.study.file import load, studies
     from navcore.study.plan import Plan
@@ -127,22 +134,19 @@ def chosen_task(session: Session) -> StudyTask:
         raise InputError(Fault("", "study", display.study, allowed))
     plan = Plan(study, where)
     require_small(plan)
-    return StudyTask(study, where, plan.scenario, present)
+    return plan, present
 
 
 def planned(session: Session) -> str:
     """How many runs the chosen study has, and about how long they take; or why it cannot be run."""
-    from navcore.study.plan import Plan
-
     try:
-        task = chosen_task(session)
+        plan, _ = _chosen(session)
     except InputError as error:
         return Text.joined("; ", map(str, error.faults))
-    plan = Plan(task.study, task.where)
     return Text(
         "{runs} runs, each of {methods} methods; about {seconds} s.",
         runs=plan.runs,
-        methods=len(task.scenario.method),
+        methods=len(plan.scenario.method),
         seconds=max(1, round(plan.seconds() / cores())),
     )
 
@@ -155,14 +159,12 @@ def study_of_points(session: Session) -> Study:
     InputError
         It cannot be made, or has too many points for a page.
     """
-    from navcore.study.plan import Plan
-
-    task = chosen_task(session)
-    points = Plan(task.study.model_copy(update={"seeds": 1}), task.where).runs
+    plan, _ = _chosen(session)
+    points = plan.runs // plan.study.seeds
     if points > MOST_POINTS:
         allowed = Text("are {points} points; at most {most} on the page", points=points, most=MOST_POINTS)
-        raise InputError(Fault(task.where, "factor", None, allowed))
-    return task.study
+        raise InputError(Fault(plan.where, "factor", None, allowed))
+    return plan.study
 
 
 def run_scenario(task: StudyTask, number: int) -> Scenario:
