@@ -1,5 +1,7 @@
 """What a sweep or a study varies, in words: labels of its quantities and of their values."""
 
+from collections.abc import Mapping
+
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from schuler_bench.plots.units import number
@@ -18,6 +20,17 @@ def varied_label(column: str) -> str:
     if column in SWEPT:
         return SWEPT[column][1]
     return symbol(column.rsplit(".", 1)[-1]) if "." in column else column
+
+
+def factors_text(values: Mapping[str, float | str]) -> str:
+    """Values of factors, each behind its label."""
+    return Text.joined(
+        ", ",
+        (
+            Text("{name} = {value}", name=varied_label(key), value=value_text(at))
+            for key, at in values.items()
+        ),
+    )
 
 
 def value_text(value: float | str) -> str:

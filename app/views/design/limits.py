@@ -21,7 +21,7 @@ from schuler_bench.plots.effective import growth_text
 from schuler_bench.plots.limits import SIGNS, limit_words, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
-from schuler_bench.plots.varied import value_text, varied_label
+from schuler_bench.plots.varied import factors_text
 from schuler_bench.session.requirements import asked, limits_of
 from schuler_bench.views.requirements.shares import share_text
 from schuler_bench.views.tune.fronts import setting_text
@@ -121,15 +121,11 @@ def limits_wanted() -> str:
 
 def _robust_title(found: Robust) -> str:
     """What the rows are, and what the most robust one costs in the scenario itself."""
-    factors = found.methods[0].where.items()
-    where = Text.joined(
-        ", ", (Text("{name} = {value}", name=varied_label(key), value=value_text(at)) for key, at in factors)
-    )
     return Text(
         "Every network, tuned for the worst of {points} points of the study, and there; the first is worst "
         "with {where}. Price: {price} % of the seeds of this scenario",
         points=found.points,
-        where=where,
+        where=factors_text(found.methods[0].where),
         price=number(100.0 * found.price, 3),
     )
 

@@ -14,7 +14,7 @@ from schuler_bench.jobs.refusals import spoken
 from schuler_bench.plots.limits import requirement_words
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
-from schuler_bench.plots.varied import value_text, varied_label
+from schuler_bench.plots.varied import factors_text
 from schuler_bench.views.tune.confirmation import confirmation_html
 
 if TYPE_CHECKING:
@@ -112,15 +112,13 @@ def _over(task: TuningTask, tuned: Tuned) -> Iterator[str]:
     if not isinstance(tuned, TunedOver):
         return
     quantity = QUANTITIES[task.objective]
-    factors = tuned.where.items()
-    where = [Text("{name} = {value}", name=varied_label(key), value=value_text(at)) for key, at in factors]
     yield Text(
         "Over {points} points of the study the objective is at most {worst} {unit}, with {where}; the runs "
         "are of the point that was worst before.",
         points=tuned.points,
         worst=number(tuned.worst / quantity.size, 4),
         unit=quantity.shown,
-        where=Text.joined(", ", where or [_HERE]),
+        where=factors_text(tuned.where) or _HERE,
     )
     yield Text(
         "In this scenario it is {here} {unit}; the setting that is best here has {best}.",
