@@ -6,6 +6,7 @@ Body axes are right, forward, up after reading. PSINS: G. Yan's toolbox; increme
 
 import math
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -240,11 +241,9 @@ def _numbers(
     if len(lines) < 2:
         raise InputError(Fault(source, "imu.file", None, Text("holds fewer than two samples")))
     try:
-        table = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)
-        if table.shape[1] != columns:
-            raise ValueError
+        table = _rows(lines, columns, separator)
     except ValueError:
-        bad = next(i for i, line in enumerate(lines) if not _is_row(line, columns, separator))
+        bad = _first_bad(lines, columns, separator)
         what = Text(
             "data line {bad} is no row of {columns} numbers: {lines}",
             bad=bad + first_line,
@@ -256,14 +255,26 @@ def _numbers(
     return table
 
 
-def _is_row(line: str, columns: int, separator: str | None) -> bool:
-    words = line.split(separator)
-    if "_" in line or not line.isascii():  # numbers for `float`, which the reader does not take
-        return False
-    try:
-        return len(words) == columns and all(word.strip() and float(word) is not None for word in words)
-    except ValueError:
-        return False
+def _rows(lines: list[str], columns: int, separator: str | None) -> np.ndarray:
+    """Numbers, shape (n, columns); ValueError where a line has others."""
+    table = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)
+    if table.shape[1] != columns:
+        raise ValueError(f"{table.shape[1]} columns")
+    return table
+
+
+def _first_bad(lines: list[str], columns: int, separator: str | None) -> int:
+    """Place of the first line that is empty, or that the reader refuses; by halves, as lines may be many."""
+    begin, end = 0, len(lines)
+    while end - begin > 1:
+        middle = (begin + end) // 2
+        part = lines[begin:middle]
+        with suppress(ValueError):
+            if all(map(str.strip, part)) and _rows(part, columns, separator).size:
+                begin = middle
+                continue
+        end = middle
+    return begin
 
 
 def _regular(time_s: np.ndarray, source: str) -> Evenness:
