@@ -25,7 +25,7 @@ _TEXTS = {
 """Kinds of fields that are shown as text: how that is read and written."""
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
-_CAST = {"number": float, "flag": bool}
+_CAST: dict[str, Callable[[Any], Any]] = {"number": float, "flag": bool, "choice": choice_words}
 _UNKNOWN = object()
 
 Edit = Callable[["Control", bool], None]
@@ -152,10 +152,8 @@ class Control:
         self._slider.show(slider.position(value))
 
     def _as_shown(self, value: Any) -> Any:
-        if self.spec.kind in ("number", "flag"):
+        if self.spec.kind in _CAST:
             return _CAST[self.spec.kind](value)
-        if self.spec.kind == "choice":
-            return choice_words(value)
         return value if self.spec.kind == "integer" else self.as_text(value)
 
     def _given(self, shown: Any) -> Any:

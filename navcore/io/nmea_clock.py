@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from navcore.io.nmea_lines import Sentences, Tally
+from navcore.io.nmea_values import seconds_of
 from navcore.io.stamps import LONGEST_STAMP, StampReader, midnight
 
 _DAY = 86400.0
@@ -152,7 +153,7 @@ def _moment(key: str, fields: str) -> float | None:
             day, month, year = int(date[:2]), int(date[2:4]), int(date[4:6])
         else:
             day, month, year = (int(part) for part in parts[date_place : date_place + 3])
-        moment = midnight(year, month, day) + int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
+        moment = midnight(year, month, day) + seconds_of(time)
         datetime.fromtimestamp(moment, UTC)
     except (ValueError, IndexError, OverflowError):  # no calendar has it
         return None

@@ -37,7 +37,7 @@ def number(field: str) -> float:
     return math.inf if math.isnan(found) else found
 
 
-def _seconds(field: str) -> float:
+def seconds_of(field: str) -> float:
     """Time ``hhmmss`` or ``hhmmss.sss``, s."""
     return int(field[:2]) * 3600.0 + int(field[2:4]) * 60.0 + float(field[4:])
 
@@ -47,13 +47,13 @@ def time_of_day(field: str) -> float:
     """UTC of a standard sentence, s: a time that a clock can show."""
     if _TIME.fullmatch(field) is None:
         raise ValueError(f"{field} is no time")
-    return _seconds(field)
+    return seconds_of(field)
 
 
 @_remembered
 def makers_time(field: str) -> float:
     """UTC of a maker's sentence, s; other sentences of the maker do not begin with digits."""
-    return _seconds(field) if field[:6].isdigit() else math.nan
+    return seconds_of(field) if field[:6].isdigit() else math.nan
 
 
 @_remembered
