@@ -388,7 +388,7 @@ class Page:
             front = [view.title for view in self._views if view.title in self._front]
             if front:
                 self._heard.content = ""
-                self.commands.ask_page("front", "|".join(front))
+                self.commands.ask_page("front-again", "|".join(front))
             for view in self._views:
                 self._faults.call(view.follow_scenario)
                 self._faults.call(view.follow_display)

@@ -31,10 +31,13 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
     """Let the report of a failed test say what its pages and the server hold."""
     report = yield
     if report.failed:
-        for name, value in getattr(item, "funcargs", {}).items():
-            if isinstance(value, Bench):
-                report.sections.append((f"page of {name!r}", value.account()))
-                break
+        pages = {
+            id(page): (name, page)
+            for name, page in getattr(item, "funcargs", {}).items()
+            if isinstance(page, Bench)
+        }
+        for name, page in pages.values():
+            report.sections.append((f"page of {name!r}", page.account()))
     return report
 
 

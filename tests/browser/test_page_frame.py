@@ -185,6 +185,23 @@ def test_who_presents_and_a_lesson_give_the_3d_view_the_room_of_the_plots(moving
         moving.page.wait_for_function(f"large => large === ({width})() < {least / 2}", arg=large == "view")
 
 
+def test_a_new_layout_keeps_the_tab_that_was_chosen_meanwhile(moving: Bench) -> None:
+    """The server brings back the tabs that it has heard of; one that was chosen since stays in front."""
+    moving.tab("Errors")
+    page, server = moving.page, server_side(moving)
+    with moving.session.lock:  # it does not hear of the tab yet
+        page.evaluate("() => schuler.open(schuler.tab('Spectrum'))")
+        page.wait_for_function("look.inFront", arg=["Spectrum"])
+        server.commands.ask_page("front-again", "Method|Errors")
+        server.client.flush()
+        page.wait_for_function(
+            "() => document.getElementById('sb-asked')?.dataset.asked.includes('Method|Errors')"
+        )
+        page.evaluate("look.nextFrame")
+    moving.heard()
+    assert page.evaluate("look.inFront", ["Spectrum"])
+
+
 def test_a_window_that_is_too_small_says_so(another: Another) -> None:
     bench = another(390, 844)
     bench.page.goto(f"{bench.url}?start=no")

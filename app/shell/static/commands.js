@@ -181,13 +181,17 @@
     setTimeout(() => document.querySelector("input[type=file]")?.click(), 200);
   }
 
-  // The tabs of who presents come to the front without taking the focus.
-  const follow = (names) => names.split("|").forEach((name) => window.schuler.open(window.schuler.tab(name)));
+  // Tabs come to the front without taking the focus: those of who presents; those that the server knew to be there before
+  // the panels were made anew, but for what the user has chosen since.
+  const bring = (names) => window.schuler.foremost(names.map(window.schuler.tab)).forEach(window.schuler.open);
+  const follow = (names) => bring(names.split("|"));
+  const bringBack = (names) => bring([...names.split("|"), ...window.schuler.unheard()]);
 
   const ACTIONS = {
     language: window.schuler.switchLanguage,
     tab: openTab,
     front: follow,
+    "front-again": bringBack,
     upload,
     keys: showKeys,
     link: (id) => showLink(id),

@@ -50,11 +50,10 @@
       if (unknown.length > 0) window.schuler.command("no-tab", unknown.join("|"));
     }
     told = true;
-    // Of several tabs of one panel the last one stays in front.
-    const last = new Map(found.filter(Boolean).map((tab) => [tab.closest('[role="tablist"]'), tab]));
-    const behind = [...last.values()].filter((tab) => tab.getAttribute("aria-selected") !== "true");
+    const foremost = window.schuler.foremost(found);
+    const behind = foremost.filter((tab) => tab.getAttribute("aria-selected") !== "true");
     behind.forEach((tab) => window.schuler.open(tab));
-    steady = behind.length === 0 && heard([...last.values()]) ? steady + 1 : 0;
+    steady = behind.length === 0 && heard(foremost) ? steady + 1 : 0;
     if (steady >= STEADY) end();
   }
 

@@ -44,9 +44,19 @@
     const input = window.schuler.box(LABEL);
     if (input === null) return;
     const text = state();
-    if (document.getElementById("sb-heard")?.dataset.state === text) return;
+    if (document.getElementById("sb-heard")?.dataset.state === text) return void (unheard = []);
     window.schuler.write(input, text);
   }
+
+  // Tabs that were brought to the front, the last one last, of which the server may not have heard.
+  let unheard = [];
+  function note({ target }) {
+    const tab = target instanceof Element && target.closest('[role="tab"]');
+    if (!tab) return false;
+    unheard.push(window.schuler.english(tab.textContent));
+    return true;
+  }
+  window.schuler.unheard = () => [...unheard];
 
   // One click may open a tab and close another, and tabs change after the click: they are read once they stand still.
   function soon(delay = 60) {
@@ -80,8 +90,8 @@
   addEventListener("resize", () => soon(150));
   addEventListener("filled-plots", () => soon());
   addEventListener("columns", () => soon());
-  addEventListener("click", () => soon(), true);
-  addEventListener("keyup", (event) => event.target instanceof Element && event.target.closest('[role="tab"]') && soon());
+  addEventListener("click", (event) => (note(event), soon()), true);
+  addEventListener("keyup", (event) => note(event) && soon());
   setInterval(() => window.schuler.busy() || report(), 1000);
   const started = setInterval(() => {
     if (window.schuler.box(LABEL) === null) return;

@@ -56,5 +56,8 @@
       tab.dispatchEvent(new KeyboardEvent("keydown", pressed));
       tab.dispatchEvent(new KeyboardEvent("keyup", pressed)); // page.js reports the tabs in front after it
     },
+
+    // Of several tabs of one panel the last one stays in front.
+    foremost: (tabs) => [...new Map(tabs.filter(Boolean).map((tab) => [tab.closest('[role="tablist"]'), tab])).values()],
   });
 })();
