@@ -1,4 +1,4 @@
-"""Memory of the server: its return to the system, and the interval of the garbage collector.
+"""Memory of the server and its workers: its return to the system, and the interval of the garbage collector.
 
 On Linux what is freed is kept, in an arena for every thread. Python's collector holds the interpreter while
 it looks through all objects, and nobody is answered meanwhile.
@@ -8,9 +8,12 @@ import ctypes
 import gc
 import threading
 from collections.abc import Callable
+from functools import cache
 
-_ARENA_MAX = -8
+_TRIM_THRESHOLD, _MMAP_THRESHOLD, _ARENA_MAX = -1, -3, -8
 _ARENAS = 2
+_KEPT, _LARGEST_KEPT = 64 << 20, 32 << 20
+"""Bytes that are kept at the end of the heap, and of an array whose memory is kept; glibc allows no more."""
 _AFTER_S = 3.0
 _THRESHOLDS = 5_000, 10, 10
 """Of new objects, and of rounds of the youngest and the middle generation (`gc.set_threshold`)."""
@@ -29,6 +32,18 @@ def bound_arenas() -> None:
     libc = _glibc()
     if libc is not None:
         libc.mallopt(_ARENA_MAX, _ARENAS)
+
+
+@cache
+def keep_freed() -> None:
+    """Let the memory of arrays be used again instead of going back to the system at once.
+
+    Dask starts its workers with ``MALLOC_TRIM_THRESHOLD_``: each array then comes page by page.
+    """
+    libc = _glibc()
+    if libc is not None:
+        libc.mallopt(_TRIM_THRESHOLD, _KEPT)
+        libc.mallopt(_MMAP_THRESHOLD, _LARGEST_KEPT)
 
 
 def collect_seldom() -> None:

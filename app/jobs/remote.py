@@ -14,6 +14,7 @@ from navcore.foundation.kernel_cache import kernel_hash
 from navcore.foundation.kernel_digest import source_digest
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
+from schuler_bench.memory import keep_freed
 
 NO_PROGRAM = Text("no program that answers")
 _REPORT_S = 0.2
@@ -86,6 +87,7 @@ def carry_out(ours: dict[str, str], report: tuple[str, str, int], function: Comp
 
     if why := misfit(program(), ours):
         raise RuntimeError(f"a worker has {why}")
+    keep_freed()
     worker, (topic, name, number) = get_worker(), report
     key, last_s = worker.get_current_task(), 0.0
 

@@ -1,7 +1,8 @@
-"""What the tests are made with: Chromium, audit, mutations, points of the page; the garbage of a server."""
+"""What the tests are made with: Chromium, audit, mutations, points of the page; the memory of a server."""
 
 import ast
 import json
+import os
 import subprocess
 import sys
 import tomllib
@@ -180,3 +181,29 @@ print(sum(id(one) in seen for one in lasting), sum(id(one) in seen for one in la
 
 def test_only_what_came_later_is_looked_through():
     assert subprocess.check_output([sys.executable, "-c", _CHILD], text=True) == "0 10000\n"
+
+
+_ARRAYS = """
+import resource
+import numpy as np
+from schuler_bench.memory import keep_freed
+
+def pages():
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(20):
+        np.ones(1 << 18)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+apart = pages()
+keep_freed()
+print(apart, pages())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems keep freed memory by rules of their own")
+def test_memory_of_arrays_is_used_again_where_dask_gives_it_back():
+    environment = os.environ | {"MALLOC_TRIM_THRESHOLD_": "65536"}
+    told = subprocess.check_output([sys.executable, "-c", _ARRAYS], text=True, env=environment)
+    apart, kept = map(int, told.split())
+    assert apart > 15 * 512, "each of twenty arrays of 2 MiB came page by page"
+    assert kept < 2 * 512, "the first one alone"
