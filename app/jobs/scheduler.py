@@ -3,10 +3,10 @@
 Three lanes for what is computed here. *Answers* are the short runs that follow a control: one a core, the
 visitors in turn. *Long* runs are those that are estimated to take a while: one a core but for one core, and
 they stand still while answers want as many cores: a run computes its methods side by side, and would leave
-an answer less than one. *Spare* work (what dominates a run, envelopes, verification,
-searches, pins after a restart) goes on only while nothing else does. A job stands still where it asks
-whether it is cancelled; so that none stands still for ever under lasting load, each gets a short turn after a
-while all the same. All jobs together are admitted by their estimated memory.
+an answer less than one. *Spare* work (what dominates a run, envelopes, verification, searches, studies, pins
+after a restart) goes on only while nothing else does and no answer is being drawn. A job stands still where
+it asks whether it is cancelled; so that none stands still for ever under lasting load, each gets a short turn
+after a while all the same. All jobs together are admitted by their estimated memory.
 
 A fourth lane is for heavy jobs that a Dask cluster computes (`schuler_bench.jobs.cluster`): they take turns
 among themselves, and neither cores nor memory of this machine.
@@ -26,10 +26,12 @@ GIB = 1 << 30
 WORKERS = "SCHULER_WORKERS"
 """Set in the environment of a worker: how many share the machine."""
 _TURN_S = 0.2
-"""A long or spare job that was let on goes on for at least so long."""
+"""A long or spare job that has begun, or has stood still for long, goes on for at least so long."""
 _PATIENCE_S = {"long": 0.8, "spare": 2.0}
 """So long one stands still at most before it gets a turn."""
 _LOOK_S = 0.05
+_DRAWN_S = 0.12
+"""So long after an answer its picture is drawn, by this process and by a browser that may share the cores."""
 _MOST_REMEMBERED = 4096
 _MOST_SPARE = 4
 """Jobs beside the answers at once: each may be of a process of its own."""
@@ -169,7 +171,8 @@ class Scheduler:
                 ticket._still = True
                 self._changed.wait(_LOOK_S)
             ticket._still = False
-            ticket._since_s = time.monotonic()
+            if time.monotonic() >= until_s:
+                ticket._since_s = time.monotonic()
 
     def figures(self) -> dict[str, float]:
         """Count what waits and runs now, for ``/metrics``: jobs of each lane, estimated bytes under way."""
@@ -198,7 +201,9 @@ class Scheduler:
             return True
         active = [t for t in running if not t._still and t is not ticket]
         if mine is Lane.SPARE:
-            return any(t.load.lane is not Lane.SPARE for t in active)
+            since_s = time.monotonic() - _DRAWN_S
+            drawn = all(answered_s < since_s for answered_s in self._last_answer_s.values())
+            return not drawn or any(t.load.lane is not Lane.SPARE for t in active)
         return sum(t.load.lane is not Lane.SPARE for t in active) >= self._most(mine)
 
     def _next(self, lane: Lane) -> Ticket | None:

@@ -213,6 +213,47 @@ def test_it_gets_a_turn_after_a_while_all_the_same(monkeypatch: pytest.MonkeyPat
     assert worker.wait_idle(5.0)
 
 
+def test_spare_work_waits_for_the_picture_of_an_answer_and_for_the_next_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "_TURN_S", 0.0)
+    monkeypatch.setattr(module, "_DRAWN_S", 30.0)
+    monkeypatch.setitem(module._PATIENCE_S, "spare", 30.0)
+    line, polls, ended = Line(cores=2), [], threading.Event()
+
+    def work(job: str, watch: Watch) -> None:
+        while not ended.is_set():
+            watch.unwanted()
+            polls.append(0)
+            time.sleep(0.001)
+
+    def stands_still() -> bool:
+        seen = len(polls)
+        time.sleep(0.15)
+        return len(polls) <= seen + 1
+
+    worker = Worker(work, load=lambda _: Load(Lane.SPARE), turns=line.turns)
+    worker.submit("study")
+    until(lambda: len(polls) > 3)
+    line.put("answer")
+    line.end("answer")
+    until(lambda: not line.turns.figures()["running_answer"])
+    assert stands_still(), "the answer is drawn"
+    (ticket,) = line.turns._running
+    ticket._since_s = -1e9  # it began long ago
+    monkeypatch.setattr(module, "_TURN_S", 30.0)
+    monkeypatch.setattr(module, "_DRAWN_S", 0.0)
+    seen = len(polls)
+    until(lambda: len(polls) > seen + 5)
+    line.put("next")
+    until(lambda: "next" in line.began)
+    time.sleep(0.05)
+    assert stands_still()
+    ended.set()
+    line.end("next")
+    assert worker.wait_idle(5.0)
+
+
 def test_spare_work_is_begun_only_when_nothing_else_is_under_way() -> None:
     line = Line(cores=2)
     line.put("answer")
