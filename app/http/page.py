@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import fontpkg_arimo
+
 from schuler_bench.bridge.program import SCRIPTS, viser_program
 
 _STATIC = Path(__file__).parent / "static"
@@ -15,6 +17,9 @@ FIRST_SCRIPTS = (*SCRIPTS, *(_STATIC / f"{name}.js" for name in ("first", "witho
 PLOTLY = _STATIC / "plotly-basic.min.js"
 """plotly.js with scatter, bar and pie alone (npm: plotly.js-basic-dist-min): a fifth of the whole to read."""
 _START = _STATIC / "start.js"
+FONT = fontpkg_arimo.ROOT / "files" / "Arimo[wght].ttf"
+"""The first of `schuler_bench.plots.style.FONT_FAMILY`; the licence is in its package."""
+_FACE = "@font-face{{font-family:{family};font-weight:400 700;font-display:block;src:url({address})}}"
 _JAVASCRIPT = "text/javascript; charset=utf-8"
 _FAST = 5
 
@@ -89,11 +94,14 @@ def build_page(scripts: Sequence[Path], later: Sequence[Path], title: str) -> Pa
     first = address("bench.js", b"\n".join(path.read_bytes() for path in scripts))
     others = [address(path.name, path.read_bytes()) for path in later]
     style = address("viser.css", viser.style, "text/css; charset=utf-8")
+    font = address("arimo.ttf", FONT.read_bytes(), "font/ttf")
     tags = [
+        f"<style>{_FACE.format(family=fontpkg_arimo.FAMILY, address=font)}</style>",
         # Fetched side by side, the largest first.
         f'<link rel="modulepreload" data-program href="{address("viser.js", viser.program)}">',
         '<link rel="preload" as="fetch" crossorigin data-zstd '
         f'href="{address("zstd.wasm", viser.zstd, "application/wasm")}">',
+        f'<link rel="preload" as="font" type="font/ttf" crossorigin href="{font}">',
         f'<script src="{first}"></script>',
         f'<link rel="stylesheet" href="{style}">',
         f'<script type="module" src="{address("start.js", _START.read_bytes())}"></script>',

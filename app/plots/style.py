@@ -43,9 +43,10 @@ BEST = Text("best of all")
 """Said of the best number of a table's row or column, which ``class="sb-best"`` marks."""
 SEA = "#F4F7FA"
 
-# The page's own font stack, so that a plot's text is the page's; the last ones have the signs of buttons.
+# One list for labels, tables, plots and map. The server sends the first one (app/http/page.py); the others
+# have what it lacks, such as Chinese, or stand in where a browser refuses it; the last ones have signs.
 FONT_FAMILY = (
-    '-apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif, '
+    'Arimo, -apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif, '
     '"DejaVu Sans", "Segoe UI Symbol"'
 )
 SVG_FONT = FONT_FAMILY.replace('"', "'")

@@ -388,6 +388,13 @@ look.misprint = ([id, shown]) => {
 look.inFront = tabs => tabs.every(name => [...document.querySelectorAll('[role=tab]')]
   .some(tab => tab.textContent === name && tab.getAttribute('aria-selected') === 'true'));
 
+// ------------------------------------------------------------ test_page_fonts
+
+// Texts in view that are in another font than this.
+look.otherFonts = family => [...document.querySelectorAll('body *')]
+  .filter(e => e.offsetParent && [...e.childNodes].some(c => c.nodeType === 3 && c.data.trim()))
+  .filter(e => !getComputedStyle(e).fontFamily.startsWith(family)).map(e => e.outerHTML.slice(0, 80));
+
 // ------------------------------------------------------------ test_page_reading
 
 look.chart = label => Object.values(window.__viserTestpoints.uplots).map(e => e.chart)

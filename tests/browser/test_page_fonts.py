@@ -1,4 +1,4 @@
-"""The layout in a wide font, and at a zoom of 125 %: what other tests hold in a narrow one."""
+"""The page's own font; without it, the layout in a wide one, and at a zoom of 125 %."""
 
 import os
 import re
@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
+from fontpkg_arimo import FAMILY
 from playwright.sync_api import Browser
 
 from tests.browser import test_page_layout as layout
@@ -40,11 +41,12 @@ def wide(browser: Browser, chromium: Path, tmp_path_factory: pytest.TempPathFact
 
 @pytest.fixture(scope="module")
 def opened(wide: Browser, dashboard: Served) -> Callable[[float, bool], Bench]:
-    """Pages in the wide font, one for each zoom and pointer, which stay open."""
+    """Pages that are refused the page's font, one for each zoom and pointer, which stay open."""
 
     @cache
     def page(zoom: float, touch: bool) -> Bench:
         context = wide.new_context(device_scale_factor=zoom, has_touch=touch)
+        context.route("**/arimo.*.ttf", lambda route: route.abort())
         return Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
 
     return page
@@ -63,6 +65,19 @@ def lettered(request: pytest.FixtureRequest, opened: Callable[[float, bool], Ben
     assert re.search(r" 1\.1[0-9]", bench.page.evaluate("schuler.state()")), "a tenth wider than Arial"
     yield bench
     assert bench.faults == []
+
+
+def test_the_page_brings_its_font(wide: Browser, dashboard: Served) -> None:
+    """It is as wide as Arial where the system has a wide one only."""
+    context = wide.new_context(viewport={"width": 1366, "height": 768})
+    bench = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
+    bench.heard()
+    assert bench.page.evaluate("schuler.state()").startswith("1366x768|")
+    used = "() => [...document.fonts].map(font => [font.family, font.status])"
+    assert bench.page.evaluate(used) == [[FAMILY, "loaded"]]
+    assert bench.page.evaluate("look.otherFonts", FAMILY) == []
+    assert bench.faults == []
+    context.close()
 
 
 def in_windows(*windows: tuple[tuple[int, int], float]) -> pytest.MarkDecorator:

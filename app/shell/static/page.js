@@ -11,12 +11,14 @@
   const IN_ARIAL = 25.627; // width of the sample over its size
   let waiting = 0;
   let letter = "";
+  let lettered = false; // the page's font is there, or will not come
+  document.fonts.load("13px Arimo").finally(() => (lettered = true));
 
   // Width of a text in the page's font over its width in Arial, once the page has its style. It is measured in the
   // page: a least size of type, which some browsers have, counts too.
   function measure() {
     const known = getComputedStyle(document.documentElement).getPropertyValue("--sb-font") !== "";
-    if (letter !== "" || !known) return letter;
+    if (letter !== "" || !known || !lettered) return letter;
     const sample = Object.assign(document.createElement("span"), { textContent: SAMPLE, ariaHidden: "true" });
     sample.style.cssText = "position:absolute;visibility:hidden;white-space:pre;font:13px var(--sb-font)";
     document.body.append(sample);
@@ -42,7 +44,7 @@
   function report() {
     waiting = 0;
     const input = window.schuler.box(LABEL);
-    if (input === null) return;
+    if (input === null || !lettered) return;
     const text = state();
     if (document.getElementById("sb-heard")?.dataset.state === text) return void (unheard = []);
     window.schuler.write(input, text);
@@ -94,7 +96,7 @@
   addEventListener("keyup", (event) => note(event) && soon());
   setInterval(() => window.schuler.busy() || report(), 1000);
   const started = setInterval(() => {
-    if (window.schuler.box(LABEL) === null) return;
+    if (window.schuler.box(LABEL) === null || !lettered) return;
     clearInterval(started);
     report();
   }, 20);
