@@ -155,7 +155,7 @@ def plotly_csv(figure: PlotlyFigure, about: Iterable[str]) -> bytes:
     Parameters
     ----------
     figure : PlotlyFigure
-        Figure.
+        Figure; the ``y_title`` of its ``meta`` names the axes that have their title elsewhere.
     about : iterable of str
         Lines of comment above the header.
     """
@@ -173,7 +173,8 @@ def _axis_title(layout: dict[str, Any], trace: dict[str, Any], which: str) -> st
     axis = layout.get(f"{which}axis{trace.get(f'{which}axis', which)[1:]}", {})
     if not axis.get("title", {}).get("text") and axis.get("matches"):
         axis = layout.get(f"{which}axis{axis['matches'][1:]}", {})
-    return axis.get("title", {}).get("text", "").replace("<sub>", "").replace("</sub>", "")
+    text = axis.get("title", {}).get("text", "") or layout.get("meta", {}).get(f"{which}_title", "")
+    return text.replace("<sub>", "").replace("</sub>", "")
 
 
 def _csv(about: Iterable[str], heads: list[str], rows: Iterable[Sequence[Any]]) -> bytes:

@@ -11,6 +11,7 @@ from navcore.design.vary import tunable_fields
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import load
 from schuler_bench.plots.plotly_data import values_of
+from schuler_bench.plots.saved import plotly_csv
 from schuler_bench.views.tune.profiles import profiles_figure
 
 SCENARIO = load("sikuliaq-like")
@@ -60,7 +61,8 @@ def test_the_picture_has_a_panel_a_parameter_with_one_axis_for_the_objective() -
         "damping ratio ζ",
         "damping ratio η",
     ]
-    assert layout["yaxis2"]["matches"] == "y" and layout["yaxis"]["title"]["text"].endswith("(arcsec)")
+    assert layout["yaxis2"]["matches"] == "y" and layout["annotations"][0]["text"].endswith("(arcsec)</b>")
+    assert b",steady tilt RMS per axis (arcsec)," in plotly_csv(figure, [])
     assert layout["xaxis"]["domain"][1] < layout["xaxis2"]["domain"][0]
     assert layout["xaxis"]["ticktext"] == ["0.05", "0.1", "0.2", "0.5", "1", "2"]
     dots = [trace for trace in figure["data"] if trace["mode"] == "markers"]

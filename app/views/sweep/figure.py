@@ -61,6 +61,7 @@ def sweep_figure(
         annotations=[style.heading(Text.joined(" · ", filter(None, (title, note))), 40)],
         shapes=[],
     )
+    layout["meta"]["y_title"] = Text("{label} ({unit})", label=row.label, unit=row.shown)
     inner_px = width_px - _LEFT_PX - _RIGHT_PX
     gap = _BETWEEN_ROWS_PX / max(aspect * width_px - _TOP_PX - layout["margin"]["b"], 2.0 * _BETWEEN_ROWS_PX)
     share = style.column(inner_px)

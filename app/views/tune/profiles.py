@@ -15,7 +15,7 @@ from schuler_bench.plots import style
 from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
 
 _MOST_ABREAST = 3
-_MARGIN = {"l": 66, "r": 14, "t": 14, "b": 48}
+_MARGIN = {"l": 48, "r": 14, "t": 32, "b": 48}
 _BETWEEN, _BELOW = 0.05, 0.2
 """Parts of the figure between two panels, and between two rows of them."""
 
@@ -24,6 +24,8 @@ def profiles_figure(
     found: Sequence[Profile], objective: str, method: Method, color: int, aspect: float
 ) -> PlotlyFigure:
     """Small panels with one axis for the objective, which is logarithmic where it spans a decade.
+
+    Its name stands above the first panel: beside a low one there is no room for it.
 
     Parameters
     ----------
@@ -61,7 +63,6 @@ def profiles_figure(
             **(_logarithmic(one) if one.log else {"nticks": 5}),
         )
         axes[f"yaxis{name}"] = style.axis(
-            "" if column else title,
             domain=down,
             anchor=f"x{name}",
             type=up,
@@ -75,7 +76,12 @@ def profiles_figure(
             edge = {"color": "white", "width": 1.5}
             data.append(style.marks(method.name, color, "circle", 11, edge) | dot | where)
     layout = style.layout(
-        meta={"aspect": aspect}, margin=_MARGIN, showlegend=False, hovermode="closest", **axes
+        meta={"aspect": aspect, "y_title": title},
+        margin=_MARGIN,
+        showlegend=False,
+        hovermode="closest",
+        annotations=[style.panel_title(title)],
+        **axes,
     )
     return figure(data, layout)
 
