@@ -79,6 +79,7 @@ def test_a_card_says_which_limits_are_met_and_what_has_changed_since_the_pin(mov
     card = page.locator("#sb-strip .sb-result").nth(2)
     card.get_by_text("0 of 1").wait_for()
     assert "misses settling" in (card.locator(".sb-fact").first.get_attribute("title") or "")
+    assert "exceeds 2 % of it" in (card.locator(".sb-fact", has_text="settles").get_attribute("title") or "")
     assert session.run is not None
     session.pins.add(session.run, "sikuliaq-like", method="complementary")
     old = measure(session.run.methods[2], "settling_s")

@@ -168,6 +168,13 @@ def test_loop_figures() -> None:
     )
 
 
+def test_a_row_says_what_it_is() -> None:
+    html = metrics_html(static_run())
+    settles = "Last time at which the tilt after an initial tilt exceeds 2 % of it."
+    for label, hint in (("settling", settles), ("tilt φE", "Tilt about east φE")):
+        assert re.search(rf'<tr title="{re.escape(hint)}"><td>{label}<', html), label
+
+
 def test_the_best_of_each_row_is_marked_and_points_stand_below_each_other() -> None:
     run = static_run()
     rows = {row.label: row for row in metrics_rows(run)}

@@ -51,6 +51,8 @@ class Row:
         For every method what has changed against the baseline; empty without one.
     best : tuple of tuple of bool
         For every method, which of its cells are the best of all methods; empty where there is no best.
+    hint : str
+        What it is, shown beside the pointer; may be empty.
     """
 
     label: str
@@ -58,6 +60,7 @@ class Row:
     cells: tuple[tuple[str, ...], ...]
     deltas: tuple[str, ...] = ()
     best: tuple[tuple[bool, ...], ...] = ()
+    hint: str = ""
 
 
 def metrics_rows(
@@ -172,7 +175,9 @@ def _loop_rows(run: Run) -> list[Row]:
                 t if m.loop.stable else Text("unstable") for m, t in zip(run.methods, texts, strict=True)
             ]
         best = _best([[value] for value in values]) if key == "settling_s" else ()
-        rows.append(Row(QUANTITIES[key].label, "", tuple((text,) for text in texts), best=best))
+        quantity = QUANTITIES[key]
+        cells = tuple((text,) for text in texts)
+        rows.append(Row(quantity.label, "", cells, best=best, hint=quantity.help))
     return rows
 
 
@@ -230,7 +235,7 @@ def _error_row(run: Run, error: RecordedError, unit: Unit) -> Row:
     sizes = [
         [math.nan if s == "final" else abs(v) for s, v in zip(STATISTICS, row, strict=True)] for row in values
     ]
-    return Row(error.label, unit.name, cells, best=_best(sizes))
+    return Row(error.label, unit.name, cells, best=_best(sizes), hint=error.title)
 
 
 def metrics_html(
@@ -353,7 +358,7 @@ def _html_row(line: Row, columns: int, decimals: int = 0, look: str = "") -> str
         cells += [cell(Text.joined("", parts), "sb-n") for parts in zip(marked, filled, strict=True)]
         if line.deltas:
             cells.append(cell(quoted(line.deltas[place]), "sb-n sb-delta"))
-    return row(cells, look)
+    return row(cells, look, title=line.hint)
 
 
 def _filled(text: str, decimals: int) -> str:

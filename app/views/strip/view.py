@@ -128,9 +128,12 @@ def _numbers(method: MethodRun, before: MethodRun | None, display: Display) -> I
             unit = wanted_unit(getattr(display, choice), value, suitable)
             text = with_unit(rounded(value / unit.si), unit.name)
         change = _change(value, before, key)
-        title = QUANTITIES[key].label
-        if change:
-            title = Text("{label}; {change} since the pin", label=title, change=change)
+        words = {"label": QUANTITIES[key].label, "what": QUANTITIES[key].help, "change": change}
+        title = (
+            Text("{label}: {what} {change} since the pin.", **words)
+            if change
+            else Text("{label}: {what}", **words)
+        )
         yield _number(label, title, text, change)
 
 
