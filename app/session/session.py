@@ -141,8 +141,9 @@ class Session:
                 self._worker.cancel()
                 self.verifier.cancel()
                 self.envelopes.cancel()
-            if self.presenter is not None:
-                self.presenter = None if self.presenter is view else self.presenter
+            if self.presenter is view:
+                self.present(None)
+            elif self.presenter is not None:
                 self._tell(lambda other: other.presenter_changed())
 
     @property
@@ -158,12 +159,16 @@ class Session:
                 self._tell(lambda other: other.front_changed(front) if other is not view else None)
 
     def present(self, view: View | None) -> bool:
-        """Let one page drive alone, or (None) all of them again; False while another page drives."""
+        """Let one page drive alone, or (None) all of them again; False while another page drives.
+
+        While one presents, the 3D view is large.
+        """
         with self.lock:
             if view is not None and self.presenter not in (None, view):
                 return False
             self.presenter = view
             self._tell(lambda other: other.presenter_changed())
+            self.show(None, large="plots" if view is None else "view")
             return True
 
     # ------------------------------------------------------------ changes

@@ -274,8 +274,6 @@ class Palette:
     def _present(self) -> None:
         if not self._session.present(None if self._drives else self._page):
             notices.tell(self._client, Text("Another page presents"), [Text("It must end first.")], "warning")
-            return
-        self._session.show(None, large="view" if self._drives else "plots")
 
 
 @lru_cache(maxsize=1)

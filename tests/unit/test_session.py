@@ -258,10 +258,11 @@ def test_one_page_presents_at_a_time_and_its_leaving_frees_the_others(session: S
     assert session.present(one) and not session.present(two)
     assert session.presenter is one and "presenter_changed" in two.names
     assert session.present(None) and session.presenter is None
-    assert session.present(two)
+    assert session.present(two) and session.display.large == "view"
     one.calls.clear()
     session.detach(two)
-    assert (session.presenter, one.names) == (None, ["presenter_changed"])
+    assert (session.presenter, session.display.large) == (None, "plots")
+    assert one.names == ["presenter_changed", "display_changed"]
     session.present(one)
     session.attach(late)
     assert late.names == ["presenter_changed"]
