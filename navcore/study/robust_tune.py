@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from navcore.design.measures import TUNING_INTERVALS, Objective, Setting, read_objective
+from navcore.design.measures import TUNING_INTERVALS, Objective, Setting, measure, read_objective
 from navcore.design.ship import Ship
 from navcore.design.tune import Tuned, tune
 from navcore.design.vary import read_varied
@@ -34,7 +34,7 @@ class TunedOver(Tuned):
     points : int
         Of the study, the scenario itself not counted.
     worst : float
-        Objective where it is largest, SI (of a sum: relative).
+        Objective where it is largest, SI; of a sum, relative to what the scenario itself gave before.
     where : dict
         Values of the factors there; empty for the scenario itself.
     here, best_here : float
@@ -95,7 +95,8 @@ def tune_over(
     alone = tune(scenario, objective, vary, require, progress=part_of(progress, 0.0, _ALONE), **given)
     everywhere = (scenario, *points)
     over_the_run = alone.judged == "ensemble"
-    before = [_value(wanted, one, one, index, over_the_run) for one in everywhere]
+    units = _units(wanted, scenario, index, over_the_run)
+    before = [_value(wanted, one, one, index, over_the_run, units) for one in everywhere]
     order = np.argsort(before, kind="stable")
     picked = order[np.unique(np.linspace(0, len(order) - 1, _SEARCHED).round().astype(int))].tolist()
     *others, hardest = (everywhere[at] for at in picked)
@@ -105,7 +106,7 @@ def tune_over(
     )  # fmt: skip
     methods = found.scenario.method
     over_the_run = found.judged == "ensemble"
-    after = [_value(wanted, one, found.scenario, index, over_the_run) for one in everywhere]
+    after = [_value(wanted, one, found.scenario, index, over_the_run, units) for one in everywhere]
     worst = int(np.argmax(after))
     found = replace(found, scenario=scenario.model_copy(update={"method": methods}))
     return TunedOver(
@@ -114,14 +115,29 @@ def tune_over(
         worst=after[worst],
         where=plan.values(places[worst - 1]) if worst else {},
         here=after[0],
-        best_here=_value(wanted, scenario, alone.scenario, index, over_the_run),
+        best_here=_value(wanted, scenario, alone.scenario, index, over_the_run, units),
     )
 
 
-def _value(objective: Objective, point: Scenario, setting: Scenario, index: int, over_the_run: bool) -> float:
+def _units(objective: Objective, scenario: Scenario, index: int, over_the_run: bool) -> dict[str, float]:
+    """What each term of a weighted sum counts relative to: its value in the scenario before."""
+    if len(objective.terms) == 1:
+        return {}
+    present = Setting(Ship(scenario, over_the_run, TUNING_INTERVALS), scenario.method[index])
+    return {name: measure(present, name) for name in objective.names}
+
+
+def _value(
+    objective: Objective,
+    point: Scenario,
+    setting: Scenario,
+    index: int,
+    over_the_run: bool,
+    units: dict[str, float],
+) -> float:
     """Objective at a point of a method as it is set in another scenario; infinite where it cannot be."""
     try:
         ship = Ship(point, over_the_run, TUNING_INTERVALS)
-        return objective.value(Setting(ship, setting.method[index]), {})
+        return objective.value(Setting(ship, setting.method[index]), units)
     except (InputError, np.linalg.LinAlgError):
         return math.inf

@@ -1,6 +1,7 @@
 """A setting that is best at the worst point of a study, and its price in the scenario itself."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,21 @@ def test_page_and_terminal_say_what_it_costs() -> None:
     html = proposal_html(TuningTask(ship(), "tilt_rms", ("method.0.network.sigma",), (), over=study()), found)
     assert "Over 3 points of the study the objective is at most" in html
     assert "the setting that is best here has" in html
+    task = TuningTask(ship(), "tilt_rms", ("method.0.network.sigma",), (), over=study())
+    assert "arcsec, with " in html
+    at_home = proposal_html(task, replace(found, where={}))
+    assert "arcsec, in this scenario itself; the runs are of" in at_home
+
+
+def test_a_weighted_sum_is_relative_to_what_the_scenario_gave_before() -> None:
+    found = tune_over(ship(), study(), "tilt_rms + velocity_rms", VARY)
+    names = "tilt_rms", "velocity_rms"
+    before, after = (
+        [measure(Setting(Ship(ship(), False, TUNING_INTERVALS), method), name) for name in names]
+        for method in (ship().method[0], found.scenario.method[0])
+    )
+    assert found.here == pytest.approx(sum(new / old for new, old in zip(after, before, strict=True)))
+    assert found.best_here <= 2.0 * (1.0 + 1e-9), "what it was before"
 
 
 def test_a_study_must_change_what_is_not_tuned() -> None:

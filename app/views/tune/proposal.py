@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from navcore.design.tune import Tuned
     from schuler_bench.jobs.designer import TuningTask
 
-
-_HERE = Text("this scenario")
+_HERE = Text("in this scenario itself")
 
 
 def proposal_html(task: TuningTask, tuned: Tuned, *, accepted: bool = False) -> str:
@@ -112,13 +111,14 @@ def _over(task: TuningTask, tuned: Tuned) -> Iterator[str]:
     if not isinstance(tuned, TunedOver):
         return
     quantity = QUANTITIES[task.objective]
+    where = Text("with {factors}", factors=factors_text(tuned.where)) if tuned.where else _HERE
     yield Text(
-        "Over {points} points of the study the objective is at most {worst} {unit}, with {where}; the runs "
-        "are of the point that was worst before.",
+        "Over {points} points of the study the objective is at most {worst} {unit}, {where}; the runs are of "
+        "the point that was worst before.",
         points=tuned.points,
         worst=number(tuned.worst / quantity.size, 4),
         unit=quantity.shown,
-        where=factors_text(tuned.where) or _HERE,
+        where=where,
     )
     yield Text(
         "In this scenario it is {here} {unit}; the setting that is best here has {best}.",
