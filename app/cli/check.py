@@ -58,11 +58,16 @@ class CheckCommand:
 
 
 def guarded_check(file: str, map_file: str | None = None) -> FileReport:
-    """Check a file in a child process with bounds on memory and time: it may come from anywhere."""
+    """Check a file in a child process with bounds on memory and time: it may come from anywhere.
+
+    A preset is checked here: it is ours, and no kernel is compiled but those that its check needs.
+    """
     from navcore.checks.report import FileReport
     from navcore.foundation import guarded
     from navcore.foundation.errors import InputError
 
+    if map_file is None and _is_preset(file):
+        return check(file)
     readers = (*_READERS, *_BY_ENDING.get(PurePath(file).suffix.lower(), ()))
     if _is_scenario(file):
         _compile_kernels()

@@ -8,11 +8,13 @@ import tempfile
 import pytest
 from numba.core import event
 
+from navcore.checks.report import FileReport
+from navcore.foundation import guarded
 from navcore.scenario.file import load, scenario_hash
 from navcore.warm import compile_once
 from schuler_bench.bench.process import environment
 from schuler_bench.cli import main
-from schuler_bench.cli.check import check
+from schuler_bench.cli.check import check, guarded_check
 from tests.recordings import ship
 
 
@@ -203,28 +205,55 @@ class Uncached(event.Listener):
         del event
 
 
-@pytest.mark.slow
-@pytest.mark.timeout(900)
-def test_a_preset_is_understood_right_after_an_installation(tmp_path):
-    """With an empty cache, as after ``pip install``; the second time without a word about kernels."""
-    places = dict.fromkeys(("HOME", "XDG_CACHE_HOME"), str(tmp_path))
+def twice_after_an_installation(file, folder):
+    """``schuler check`` with an empty cache, as after ``pip install``, and once more."""
+    places = dict.fromkeys(("HOME", "XDG_CACHE_HOME"), str(folder))
     variables = {name: value for name, value in environment().items() if name != "SCHULER_CACHE_DIR"} | places
-    words = [sys.executable, "-m", "schuler_bench", "check", "zha-fast"]
+    words = [sys.executable, "-m", "schuler_bench", "check", file]
     # A socket's path holds about 100 letters: the folder of a test may lie too deep for that of the readers.
     with tempfile.TemporaryDirectory(dir="/tmp") as temporary:
         variables |= {"TMPDIR": temporary}
-        first, second = (
+        return [
             subprocess.run(words, env=variables, capture_output=True, text=True, check=False)
             for _ in range(2)
-        )
+        ]
+
+
+def test_a_preset_is_understood_right_after_an_installation(tmp_path):
+    first, second = twice_after_an_installation("zha-fast", tmp_path)
+    assert (first.returncode, first.stderr, second.stderr) == (0, "", "")
+    assert "zha-fast" in first.stdout and first.stdout == second.stdout
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(900)
+def test_a_file_is_understood_right_after_an_installation(tmp_path):
+    """The kernels are compiled before it is read; the second time without a word about them."""
+    file = tmp_path / "ship.toml"
+    file.write_text("schema = 1\n[[method]]\n")
+    first, second = twice_after_an_installation(str(file), tmp_path)
     assert (first.returncode, second.returncode, second.stderr) == (0, 0, "")
     assert first.stderr.startswith("kernels: ") and first.stdout == second.stdout
+
+
+def test_kernels_are_compiled_before_a_file_is_read_in_a_child(tmp_path, monkeypatch, capsys):
+    file = tmp_path / "ship.toml"
+    file.write_text("schema = 1\n[[method]]\n")
+    children = []
+    monkeypatch.setattr("navcore.foundation.kernel_cache.complete", lambda: False)
+    monkeypatch.setattr("navcore.warm.compile_once", lambda progress: progress(f"{len(children)} children"))
+    monkeypatch.setattr(guarded, "start", lambda *given: children.append(given))
+    monkeypatch.setattr(guarded, "call", lambda file, *given: FileReport(file, ""))
+    assert guarded_check(str(file)).ok
+    assert capsys.readouterr().err == "kernels: 0 children\n" and len(children) == 1
 
 
 def test_a_temporary_folder_with_a_long_path_is_named(tmp_path):
     deep = tmp_path / ("a" * 80)
     deep.mkdir()
-    words = [sys.executable, "-m", "schuler_bench", "check", "zha-fast"]
+    file = tmp_path / "ship.toml"
+    file.write_text("schema = 1\n[[method]]\n")
+    words = [sys.executable, "-m", "schuler_bench", "check", str(file)]
     variables = environment() | {"TMPDIR": str(deep)}
     done = subprocess.run(words, env=variables, capture_output=True, text=True, check=False)
     assert done.returncode != 0
