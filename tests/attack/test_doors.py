@@ -155,8 +155,10 @@ def test_page_and_its_scripts_are_served_plain_and_compressed(bench: Bench) -> N
     assert b"<title>Schuler Bench</title>" in plain.body
     assert b"<script>" not in plain.body and b"javascript:" not in plain.body
     names = re.findall(r'(?:src|href)="\.\./\.\./static/([^"]+)"', plain.body.decode())
-    assert {name.split(".")[0] for name in names} == {"bench", "viser", "zstd", "start", "plotly-basic"}
-    kinds = {"js": "text/javascript", "css": "text/css", "wasm": "application/wasm"}
+    assert {name.split(".")[0] for name in names} == {
+        "arimo", "bench", "viser", "zstd", "start", "plotly-basic",
+    }  # fmt: skip
+    kinds = {"js": "text/javascript", "css": "text/css", "wasm": "application/wasm", "ttf": "font/ttf"}
     for name in names:
         answer = ask(bench.port, f"/static/{name}")
         assert answer.status == 200 and "immutable" in answer.headers["Cache-Control"]
