@@ -80,6 +80,17 @@ def test_the_page_brings_its_font(wide: Browser, dashboard: Served) -> None:
     context.close()
 
 
+def test_a_font_that_does_not_come_holds_nothing_up(wide: Browser, dashboard: Served) -> None:
+    context = wide.new_context(viewport={"width": 1366, "height": 768})
+    asked: list[str] = []
+    context.route("**/arimo.*.ttf", lambda route: asked.append(route.request.url))
+    page = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).page
+    page.goto(f"{dashboard[0].url}?fixedDpr=0.25&start=no", wait_until="commit")
+    page.wait_for_function("() => document.querySelector('#sb-run[data-run]') && look.heard()")
+    assert asked and re.match(r"1366x768 1\.1[0-9]\|", page.evaluate("schuler.state()"))
+    context.close()
+
+
 def in_windows(*windows: tuple[tuple[int, int], float]) -> pytest.MarkDecorator:
     """Run a test in windows with their zoom."""
     return pytest.mark.parametrize("lettered", windows, ids=str, indirect=True)

@@ -11,8 +11,9 @@
   const IN_ARIAL = 25.627; // width of the sample over its size
   let waiting = 0;
   let letter = "";
-  let lettered = false; // the page's font is there, or will not come
-  document.fonts.load("13px Arimo").finally(() => (lettered = true));
+  let lettered = false; // the page's font is there, or does not come in time
+  const font = document.fonts.load("13px Arimo").catch(() => {});
+  Promise.race([font, new Promise((late) => setTimeout(late, 1000))]).then(() => (lettered = true));
 
   // Width of a text in the page's font over its width in Arial, once the page has its style. It is measured in the
   // page: a least size of type, which some browsers have, counts too.
