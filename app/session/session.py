@@ -159,10 +159,7 @@ class Session:
                 self._tell(lambda other: other.front_changed(front) if other is not view else None)
 
     def present(self, view: View | None) -> bool:
-        """Let one page drive alone, or (None) all of them again; False while another page drives.
-
-        While one presents, the 3D view is large.
-        """
+        """Let one page drive alone, the 3D view large, or (None) all; False while another page drives."""
         with self.lock:
             if view is not None and self.presenter not in (None, view):
                 return False
@@ -317,11 +314,8 @@ class Session:
 
     def close(self, *, keep_files: bool = False) -> None:
         """End the workers and remove the uploaded files, unless they are to be found again."""
-        self._worker.stop()
-        self.verifier.stop()
-        self.searches.stop()
-        self.pins.stop()
-        self.envelopes.stop()
+        for working in (self._worker, self.verifier, self.searches, self.pins, self.envelopes):
+            working.stop()
         if not keep_files:
             self.uploads.clear()
 
