@@ -67,9 +67,9 @@ def guarded_check(file: str, map_file: str | None = None) -> FileReport:
     from navcore.foundation.errors import InputError
 
     if map_file is None and _is_preset(file):
-        return check(file)
+        return _check_preset(file)
     readers = (*_READERS, *_BY_ENDING.get(PurePath(file).suffix.lower(), ()))
-    if _is_scenario(file):
+    if _holds_a_scenario(file):
         _compile_kernels()
         readers += _SCENARIO_READERS
     guarded.start(readers, guarded.Limits(2 << 30, cpu_s=120, wall_s=600.0))
@@ -81,8 +81,8 @@ def guarded_check(file: str, map_file: str | None = None) -> FileReport:
         guarded.stop()
 
 
-def _is_scenario(file: str) -> bool:
-    return PurePath(file).suffix.lower() == ".toml" or _is_preset(file)
+def _holds_a_scenario(file: str) -> bool:
+    return PurePath(file).suffix.lower() == ".toml"
 
 
 def _is_preset(file: str) -> bool:
@@ -111,20 +111,21 @@ def check(file: str, map_file: str | None = None) -> FileReport:
 
     if mapped := map_file or map_beside(file):
         return check_mapped(file, mapped)
-    if not _is_scenario(file):
+    if _is_preset(file):
+        return _check_preset(file)
+    if not _holds_a_scenario(file):
         return check_file(file, [IMU_CHECKER])
-    return _check_scenario(file)
+    from schuler_bench.cli.check_scenario import SCENARIO_CHECKER
+
+    return check_file(file, [SCENARIO_CHECKER])
 
 
-def _check_scenario(file: str) -> FileReport:
-    from navcore.checks.file import check_file
+def _check_preset(name: str) -> FileReport:
     from navcore.checks.report import FileReport
     from navcore.foundation.errors import InputError
-    from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
+    from schuler_bench.cli.check_scenario import check_scenario
 
-    if not _is_preset(file):
-        return check_file(file, [SCENARIO_CHECKER])
     try:
-        return check_scenario(file)
+        return check_scenario(name)
     except InputError as error:
-        return FileReport(file, "", faults=error.faults)
+        return FileReport(name, "", faults=error.faults)
