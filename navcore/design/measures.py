@@ -187,6 +187,11 @@ class Objective:
         """Measures that it looks at."""
         return tuple(name for name, _ in self.terms)
 
+    def reference(self, settings: Iterable[Setting]) -> dict[str, float]:
+        """Largest value of each measure in some settings: what the terms of a sum count relative to."""
+        settings = [*settings]
+        return {name: max(measure(setting, name) for setting in settings) for name in self.names}
+
     def value(self, setting: Setting, before: dict[str, float]) -> float:
         """Value of a setting; ``before`` are the measures of the setting that the search began with."""
         if len(self.terms) == 1:

@@ -17,7 +17,6 @@ from navcore.design.measures import (
     Setting,
     Ship,
     growing,
-    measure,
     over_run,
     read_objective,
     read_requirement,
@@ -312,9 +311,7 @@ def _begin(search: Search) -> tuple[np.ndarray | None, float | None]:
     values = present(search.ships[0].scenario, search.varied)
     try:
         settings = [Setting(ship, ship.scenario.method[search.varied[0].method]) for ship in search.ships]
-        search.reference = {
-            name: max(measure(setting, name) for setting in settings) for name in search.objective.names
-        }
+        search.reference = search.objective.reference(settings)
         before = search.value(settings)
     except (InputError, np.linalg.LinAlgError):
         before = math.inf

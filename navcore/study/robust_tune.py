@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 
-from navcore.design.measures import TUNING_INTERVALS, Objective, Setting, measure, read_objective
+from navcore.design.measures import TUNING_INTERVALS, Setting, read_objective
 from navcore.design.ship import Ship
 from navcore.design.tune import Tuned, tune
 from navcore.design.vary import read_varied
@@ -21,6 +22,7 @@ from navcore.study.robust import points_of
 
 _SEARCHED = 6
 """Points for which a setting is searched, from the easiest to the hardest."""
+_CANNOT_BE = (InputError, np.linalg.LinAlgError)
 _ALONE = 0.3
 """Of the time, for the setting that is best in the scenario itself."""
 
@@ -92,21 +94,35 @@ def tune_over(
     plan, places, points = points_of(scenario, study)
     wanted, index = read_objective(objective), read_varied(scenario, vary)[0].method
     given = {"along": along, "default_limits": default_limits, "cancelled": cancelled}
+    units: dict[str, float] = {}
+
+    def at(point: Scenario, setting: Scenario, over_the_run: bool) -> Setting:
+        """The method as it is set in a scenario, at a point."""
+        return Setting(Ship(point, over_the_run, TUNING_INTERVALS), setting.method[index])
+
+    def value(point: Scenario, setting: Scenario, over_the_run: bool) -> float:
+        """Objective there; infinite where it cannot be."""
+        try:
+            return wanted.value(at(point, setting, over_the_run), units)
+        except _CANNOT_BE:
+            return math.inf
+
     alone = tune(scenario, objective, vary, require, progress=part_of(progress, 0.0, _ALONE), **given)
     everywhere = (scenario, *points)
     over_the_run = alone.judged == "ensemble"
-    units = _units(wanted, scenario, index, over_the_run)
-    before = [_value(wanted, one, one, index, over_the_run, units) for one in everywhere]
+    with suppress(*_CANNOT_BE):
+        units |= wanted.reference([at(scenario, scenario, over_the_run)])
+    before = [value(one, one, over_the_run) for one in everywhere]
     order = np.argsort(before, kind="stable")
     picked = order[np.unique(np.linspace(0, len(order) - 1, _SEARCHED).round().astype(int))].tolist()
-    *others, hardest = (everywhere[at] for at in picked)
+    *others, hardest = (everywhere[place] for place in picked)
     found = tune(
         hardest, objective, vary, require,
         worst_of=others, confirm=confirm, progress=part_of(progress, _ALONE, 1.0), **given,
     )  # fmt: skip
     methods = found.scenario.method
     over_the_run = found.judged == "ensemble"
-    after = [_value(wanted, one, found.scenario, index, over_the_run, units) for one in everywhere]
+    after = [value(one, found.scenario, over_the_run) for one in everywhere]
     worst = int(np.argmax(after))
     found = replace(found, scenario=scenario.model_copy(update={"method": methods}))
     return TunedOver(
@@ -115,29 +131,5 @@ def tune_over(
         worst=after[worst],
         where=plan.values(places[worst - 1]) if worst else {},
         here=after[0],
-        best_here=_value(wanted, scenario, alone.scenario, index, over_the_run, units),
+        best_here=value(scenario, alone.scenario, over_the_run),
     )
-
-
-def _units(objective: Objective, scenario: Scenario, index: int, over_the_run: bool) -> dict[str, float]:
-    """What each term of a weighted sum counts relative to: its value in the scenario before."""
-    if len(objective.terms) == 1:
-        return {}
-    present = Setting(Ship(scenario, over_the_run, TUNING_INTERVALS), scenario.method[index])
-    return {name: measure(present, name) for name in objective.names}
-
-
-def _value(
-    objective: Objective,
-    point: Scenario,
-    setting: Scenario,
-    index: int,
-    over_the_run: bool,
-    units: dict[str, float],
-) -> float:
-    """Objective at a point of a method as it is set in another scenario; infinite where it cannot be."""
-    try:
-        ship = Ship(point, over_the_run, TUNING_INTERVALS)
-        return objective.value(Setting(ship, setting.method[index]), units)
-    except (InputError, np.linalg.LinAlgError):
-        return math.inf
