@@ -4,7 +4,7 @@ import importlib.util
 import os
 import statistics
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from navcore.law.records import LawKind
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.recorder import spans_from
 from navcore.mechanization.strapdown import Settings, VelocityReference, start_from, start_run
-from navcore.mechanization.strapdown.batch import WIDTH, BatchRun, side_by_side
+from navcore.mechanization.strapdown.batch import WIDTH, BatchRun
 from navcore.motion.static import StaticMotion
 from navcore.motion.swing import Oscillation, SwingMotion
 from navcore.motion.truth import Site
@@ -27,7 +27,7 @@ from navcore.networks.compass import CompassNetwork
 from navcore.networks.complementary import ComplementaryNetwork
 from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
-from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.sensors.imu_simulation import ImuSimulation, side_by_side
 from schuler_bench.bench.rounds import Timed, median_ratio, seconds_of, timed_rounds
 
 ROUNDS = 7
@@ -84,20 +84,23 @@ class StaticRecord:
 
     def batch(self, blocks: int) -> Timed:
         """Time compass damping of blocks of runs, each with its own biases."""
-        biases = np.random.default_rng(1).normal(size=(blocks, WIDTH, 6)) * np.repeat([1e-9, 5e-6], 3)
-        lanes = [[*side_by_side([[self.increments + bias] for bias in block])] for block in biases]
+        biases = np.random.default_rng(1).normal(size=(blocks, WIDTH, 3)) * 0.2
+        imus = [[Imu(gyro_bias_dph=tuple(bias)) for bias in block.tolist()] for block in biases]
+        lanes = [[*self._lanes(block)] for block in imus]
         return lambda: self._batch_seconds(lanes)
 
     def batch_with_noise(self, blocks: int) -> Timed:
         """Time the same with the simulation of each run's IMU, which has noise."""
-        imu = Imu(gyro_arw_dpsh=0.006, accel_vrw_ugpshz=10.0)
+        imus = [Imu(gyro_arw_dpsh=0.006, accel_vrw_ugpshz=10.0)] * WIDTH
+        return lambda: self._batch_seconds([self._lanes(imus, WIDTH * block) for block in range(blocks)])
 
-        def stream(seed: int) -> Iterable[np.ndarray]:
-            simulation = ImuSimulation(StaticMotion(), SITE, WGS84, imu, RATE_HZ, self.samples, seed)
-            return (increments for increments, _ in simulation.chunks())
-
-        seeds = np.arange(blocks * WIDTH).reshape(blocks, WIDTH)
-        return lambda: self._batch_seconds([side_by_side([stream(int(s)) for s in block]) for block in seeds])
+    def _lanes(self, imus: Sequence[Imu], seed: int = 0) -> Iterator[np.ndarray]:
+        """Increments of IMUs at rest, each with a seed of its own."""
+        still = [
+            ImuSimulation(StaticMotion(), SITE, WGS84, imu, RATE_HZ, self.samples, seed + lane)
+            for lane, imu in enumerate(imus)
+        ]
+        yield from side_by_side(still, WIDTH)
 
     def _batch_seconds(self, lanes: Sequence[Iterable[np.ndarray]]) -> float:
         settings, log = self._started(self.second)

@@ -15,7 +15,7 @@ from navcore.motion.kinematics import Kinematics
 from navcore.motion.static import StaticMotion
 from navcore.motion.truth import Truth
 from navcore.sensors.imu import Imu
-from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.sensors.imu_simulation import ImuSimulation, side_by_side
 from navcore.sensors.imu_simulation import simulation as module
 from navcore.sensors.imu_simulation.normal import fill_normals
 from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
@@ -171,6 +171,16 @@ def test_the_numbers_do_not_depend_on_the_chunks(motion, monkeypatch):
     monkeypatch.setattr(module, "CHUNK_S", 7.0)
     np.testing.assert_array_equal(increments(motion, NOISY, 30.0), whole)
     assert np.abs(increments(motion, NOISY, 30.0, seed=2) - whole).max() > 0.0
+
+
+def test_imus_side_by_side_are_each_as_alone(motion):
+    """Each with its own errors and seed, over a chunk's end to the middle of a block; the first once more."""
+    bent = NOISY.model_copy(update={"gyro_misalignment_arcsec": (9.0, 8.0, 7.0, 6.0, 5.0, 4.0)})
+    imus, count = [NOISY, bent, Imu(accel_bias_ug=(10.0, 0.0, 0.0))], 6321
+    sims = [ImuSimulation(motion, SITE, WGS84, imu, RATE, count, seed) for seed, imu in enumerate(imus)]
+    lanes = np.concatenate([*side_by_side(sims, 4)])
+    alone = [np.concatenate([chunk.copy() for chunk, _ in sim.chunks()]) for sim in [*sims, sims[0]]]
+    np.testing.assert_array_equal(lanes, np.stack(alone, axis=2))
 
 
 def test_memory_does_not_grow_with_the_run(motion):

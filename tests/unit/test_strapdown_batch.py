@@ -12,12 +12,12 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
 from navcore.mechanization.recorder import FINAL, POSITION, spans_from
 from navcore.mechanization.strapdown import Settings, start_from, start_run
-from navcore.mechanization.strapdown.batch import WIDTH, BatchRun, side_by_side
+from navcore.mechanization.strapdown.batch import WIDTH, BatchRun
 from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
-from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.sensors.imu_simulation import ImuSimulation, side_by_side
 from tests.strapdown import DENG_SWING, DRIVE, SITE, law, reference
 
 RATE, SECONDS, RUNS = 50.0, 400, WIDTH - 3
@@ -42,10 +42,9 @@ def test_each_run_is_the_single_run(motion, network, seconds, law_s):
     laws, spans = [law("external", network, law_s) for _ in range(RUNS)], spans_from([2, seconds // 2])
     batch = BatchRun(starts, laws, logs, settings, WGS84, truth, spans, before)
     # pieces of no round length, and more than there is
-    piece = min(777, samples * 2 // 5)
-    pieces = [[each[i : i + piece] for i in range(0, samples, piece)] + [each[:5]] for each in increments]
-    for lanes in side_by_side(pieces):
-        batch.advance(lanes)
+    lanes, piece = np.concatenate([*side_by_side(sims, WIDTH)]), min(777, samples * 2 // 5)
+    for part in [lanes[i : i + piece] for i in range(0, samples, piece)] + [lanes[:5]]:
+        batch.advance(part)
     for run in (0, 7, RUNS - 1):
         single = start_run(
             starts[run], settings, WGS84, law("external", network, law_s), truth, logs[run], before

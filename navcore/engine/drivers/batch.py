@@ -1,13 +1,15 @@
 """Strapdown runs of one scenario with several draws of its errors: method by method, side by side."""
 
 from collections.abc import Callable, Sequence
+from typing import cast
 
 from navcore.engine.drivers.common import law_of, network_of, requirement_spans, seen_by
 from navcore.engine.drivers.strapdown import settings_of
 from navcore.engine.strapdown_environment import strapdown_environment
 from navcore.mechanization.strapdown import velocity_reference
-from navcore.mechanization.strapdown.batch import BatchRun, side_by_side
+from navcore.mechanization.strapdown.batch import WIDTH, BatchRun
 from navcore.scenario.model import Scenario
+from navcore.sensors.imu_simulation import ImuSimulation, side_by_side
 
 _REPORTED = 6000
 """Samples between two reports, some 10 ms a method."""
@@ -47,9 +49,9 @@ def run_batches(scenarios: Sequence[Scenario], report: Callable[[float], bool]) 
         )
         for method in one.method
     ]
-    streams = [(increments for increments, _ in each.imu.chunks()) for each in environments]
+    simulated = [cast("ImuSimulation", each.imu) for each in environments]
     unreported = 0
-    for lanes in side_by_side(streams):
+    for lanes in side_by_side(simulated, WIDTH):
         for batch in batches:
             batch.advance(lanes)
         unreported += len(lanes)

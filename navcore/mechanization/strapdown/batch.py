@@ -6,7 +6,7 @@ for each run, as in the single run. A batch keeps what an ensemble judges: spans
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,8 +31,6 @@ from navcore.mechanization.strapdown.step import (
 
 WIDTH = 16
 """Runs of a block."""
-_LAID = 512
-"""Samples that are laid side by side at once: 0.4 MB, which the cache holds."""
 _W = WIDTH
 # Rows of a block's flat state: what changes, then what is held, then the previous increment.
 _D_LAT, _D_LON, _V_E, _V_N, _Q, _Z, _M_E, _M_N, _M_LAT = 0, 1, 2, 3, 4, 8, 12, 13, 14
@@ -184,28 +182,6 @@ def _advance_block(increments, samples, first, pace, x, runs):
         k += n
 
 
-def side_by_side(streams: Sequence[Iterable[np.ndarray]]) -> Iterator[np.ndarray]:
-    """Lay the increments of several IMUs side by side, piece by piece, as `BatchRun.advance` takes them.
-
-    Parameters
-    ----------
-    streams : sequence of iterable of ndarray, shape (n, 6)
-        At most `WIDTH`, with chunks of the same lengths. Lanes without a stream repeat the first, so that
-        nothing in them can go wrong.
-
-    Yields
-    ------
-    ndarray, shape (n, 6, WIDTH)
-    """
-    for chunks in zip(*streams, strict=True):
-        for first in range(0, len(chunks[0]), _LAID):
-            rows = slice(first, first + _LAID)
-            lanes = np.empty((*chunks[0][rows].shape, WIDTH))
-            for lane in range(WIDTH):
-                lanes[:, :, lane] = chunks[lane if lane < len(chunks) else 0][rows]
-            yield lanes
-
-
 class BatchRun:
     """Up to `WIDTH` runs of one method under way; give it their increments chunk by chunk.
 
@@ -296,7 +272,7 @@ class BatchRun:
         Parameters
         ----------
         increments : ndarray, shape (n, 6, WIDTH)
-            Of each run, from `side_by_side`.
+            Of each run, as `navcore.sensors.imu_simulation.side_by_side` lays them.
         """
         set_ = self.settings
         samples = min(len(increments), set_.samples - self.position)

@@ -14,9 +14,8 @@ from navcore.sensors.imu_simulation.signals import (
     fill_navigation_at_rest,
     fill_signals,
 )
-from navcore.sensors.imu_simulation.work import HALO, TILE, WORK, W
+from navcore.sensors.imu_simulation.work import HALO, TILE, WORK, W, tile_number, tile_size
 
-_MOST_TILES = 1024
 assert W == WIDTH
 
 
@@ -60,8 +59,7 @@ def simulate_blocks(
         fill_attitude(W, w)
         fill_signals(W, w)
         fill_increments(TILE, dt, w)
-    tiles = -(-block_samples // TILE)
-    size = -(-block_samples // tiles)
+    size = tile_size(block_samples)
     for n in range(blocks):
         block = first_block + n
         if flags & SUMS:
@@ -82,7 +80,7 @@ def simulate_blocks(
                 fill_attitude(padded, w)
                 fill_signals(padded, w)
                 fill_increments(samples, dt, w)
-            tile = block * _MOST_TILES + first // size
+            tile = tile_number(block, first // size)
             fill_errors(tile, samples, dt, flags, key, slow, n, white, coupling, lsb, left, w)
             write_measured(n * block_samples + first, samples, measured, w)
             if flags & SUMS:

@@ -1,7 +1,10 @@
 """Increments of an IMU that rides along a motion: made block by block, the same whatever the chunks."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
+from copy import copy
 
 import numpy as np
 
@@ -48,6 +51,8 @@ class ImuSimulation:
     ----------
     block : int
         Samples of a block, about 1 s: white noise is drawn and slow errors are held by the block.
+    errors : ErrorTerms
+        What is added to the perfect increments.
 
     Raises
     ------
@@ -72,7 +77,7 @@ class ImuSimulation:
         self.blocks = -(-samples // self.block)
         self._start_utc = start_utc
         clock = Clock(self.block / rate_hz, self.blocks, seed, begin_s)
-        self._errors = _Errors(imu, clock, 1.0 / rate_hz)
+        self.errors = ErrorTerms(imu, clock, 1.0 / rate_hz)
         end_s = (samples + self.block) / rate_hz
         self._kinematics = motion.kinematics(end_s, site, earth, start_utc)
         self._turns = self._kinematics.turns(1.0 / rate_hz)
@@ -83,20 +88,17 @@ class ImuSimulation:
 
     def before(self) -> np.ndarray:
         """Perfect increment of the interval that ends at t = 0, shape (6,)."""
-        perfect = ImuSimulation(
-            self.motion,
-            self.site,
-            self.earth,
-            Imu(),
-            self.rate_hz,
-            max(self.samples, self.block),
-            0,
-            self._start_utc,
-        )
         measured = np.empty((self.block, 6))
         earlier = self._kinematics.moved(-1.0 / self.rate_hz)
-        perfect._fill(0, 1, measured, np.empty((0, 6)), kinematics=earlier)
+        self.without_errors()._fill(0, 1, measured, np.empty((0, 6)), kinematics=earlier)
         return measured[0]
+
+    def without_errors(self) -> ImuSimulation:
+        """Return the perfect IMU on the same motion."""
+        perfect = copy(self)
+        clock = Clock(self.block / self.rate_hz, max(1, self.blocks), 0, 0.0)
+        perfect.errors = ErrorTerms(Imu(), clock, 1.0 / self.rate_hz)
+        return perfect
 
     def chunks(self, with_sums: bool = False) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """Yield measured increments from the start on, chunk by chunk.
@@ -115,15 +117,21 @@ class ImuSimulation:
         sums : ndarray, shape (blocks, 6) or (0, 6)
             Sums of the errors over each block, E N U: rad, m/s.
         """
-        self._errors.restart()
+        for first, measured, sums in self.whole_blocks(with_sums):
+            yield measured[: self.samples - first * self.block], sums
+
+    def whole_blocks(self, with_sums: bool = False) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+        """Yield what `chunks` does, each with the number of its first block, and the last block whole."""
+        self.errors.restart()
         place = np.zeros(2, np.int64)
         many = max(1, int(CHUNK_S * self.rate_hz) // self.block)
         buffers = [np.empty((min(many, self.blocks) * self.block, 6)) for _ in range(2)]
         for first in range(0, self.blocks, many):
             blocks = min(many, self.blocks - first)
-            sums, measured = np.empty((blocks if with_sums else 0, 6)), buffers[first // many % 2]
+            sums = np.empty((blocks if with_sums else 0, 6))
+            measured = buffers[first // many % 2][: blocks * self.block]
             self._fill(first, blocks, measured, sums, place)
-            yield measured[: min(blocks * self.block, self.samples - first * self.block)], sums
+            yield first, measured, sums
 
     def _fill(
         self,
@@ -134,7 +142,7 @@ class ImuSimulation:
         place: np.ndarray | None = None,
         kinematics: Kinematics | None = None,
     ) -> None:
-        e, earth, dt = self._errors, self.earth, 1.0 / self.rate_hz
+        e, earth, dt = self.errors, self.earth, 1.0 / self.rate_hz
         kin = kinematics or self._kinematics
         simulate_blocks(
             kin.kind,
@@ -164,7 +172,7 @@ class ImuSimulation:
         )
 
 
-class _Errors:
+class ErrorTerms:
     """The IMU's errors as the compiled loop takes them."""
 
     def __init__(self, imu: Imu, clock: Clock, dt: float) -> None:

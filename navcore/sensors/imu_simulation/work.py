@@ -4,6 +4,7 @@ Only so does LLVM see that the rows do not overlap and vectorises loops over twe
 dimensions or with row views it did not (twice the time). A tile is small enough for the first-level cache.
 """
 
+from navcore.foundation.compiled import inlined
 from navcore.motion.truth import COLUMNS
 
 TILE = 64
@@ -24,3 +25,17 @@ NORMAL = ERR + 6  # 6: unit normal numbers, without gaps: three sensors, then at
 HALF_NORMALS = 3 * TILE
 WORK = (NORMAL + 6) * W
 """Length of the work array."""
+
+_MOST_TILES = 1024
+
+
+@inlined
+def tile_size(block_samples):
+    """Samples of the tiles that a block is cut into; the last one may be shorter."""
+    return -(-block_samples // -(-block_samples // TILE))
+
+
+@inlined
+def tile_number(block, tile):
+    """Number of a block's tile in the run: from it follow its normal numbers."""
+    return block * _MOST_TILES + tile
