@@ -1,7 +1,7 @@
-"""The README's pictures, made from the real page: ``python -m tools.tour`` (``make tour``).
+"""The pictures of README and docs, made from the real page: ``python -m tools.tour`` (``make tour``).
 
 Drives the dashboard in headless Chromium as a visitor would and writes ``docs/tour.webp``, 20 seconds with
-captions, and ``docs/dashboard.png``.
+captions, ``docs/dashboard.png`` and ``docs/upload.png``.
 """
 
 import io
@@ -18,7 +18,8 @@ from tests.browser.patience import THROTTLE_MS
 from tools.chromium import launched
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-TOUR, STILL = DOCS / "tour.webp", DOCS / "dashboard.png"
+TOUR, STILL, UPLOAD = DOCS / "tour.webp", DOCS / "dashboard.png", DOCS / "upload.png"
+RECORDINGS = DOCS.parent / "assets" / "recordings"
 WIDTH, HEIGHT, CAPTION_PX = 1280, 720, 52
 LARGEST_BYTES = 3_000_000
 _QUALITIES = (82, 70, 60, 50, 40)
@@ -182,6 +183,26 @@ def still(bench: Bench) -> None:
     bench.page.screenshot(path=STILL)
 
 
+def upload(bench: Bench) -> None:
+    """Take the picture of docs/import.md: a track and a log from elsewhere, whose columns the user names."""
+    bench.tab("Files", "Frequency", "Errors")
+    rows = (RECORDINGS / "sikuliaq-log.csv").read_text().splitlines()[2:]
+    log = "".join(f"{cells[0]};{cells[1]}\n" for cells in (row.split(",") for row in rows))
+    bench.upload(RECORDINGS / "sikuliaq-track.csv")
+    bench.notice("sikuliaq-track.csv: ")
+    table = f"utc;fahrt\n{log}".encode()
+    bench.upload({"name": "bridge-log.csv", "mimeType": "text/csv", "buffer": table})
+    bench.notice("bridge-log.csv is kept")
+    for field, choice in (("column", "fahrt"), ("means", "speed through water"), ("unit", "kn")):
+        bench.choose(field, choice)
+    with bench.next_run():
+        bench.button("Read by these columns").click()
+    bench.close_notices()
+    bench.button("Upload a file").evaluate("button => button.scrollIntoView({block: 'center'})")
+    rest(bench.page)
+    bench.page.screenshot(path=UPLOAD, clip={"x": 0, "y": 104, "width": 325, "height": 976})
+
+
 def on_a_page(size: tuple[int, int], act: Callable[[Bench], None]) -> None:
     """Open the dashboard in a window of this size, do something on it, and close both."""
     server, dashboard = open_dashboard(port=0)
@@ -203,8 +224,9 @@ def make_tour(bench: Bench) -> None:
 
 
 def main() -> None:
-    """Make both pictures."""
+    """Make all pictures."""
     on_a_page((1920, 1080), still)
+    on_a_page((1920, 1080), upload)
     on_a_page((WIDTH, HEIGHT - CAPTION_PX), make_tour)
 
 

@@ -33,15 +33,24 @@ def _log() -> bytes:
     return "\n".join(["wann;fahrt", *(row.replace(".", ",") for row in rows)]).encode()
 
 
+def _main(page: Bench) -> list[str]:
+    """Texts of the buttons in view that have the colour of the main one."""
+    script = """() => [...document.querySelectorAll('button')].filter(button => button.offsetParent
+      && getComputedStyle(button).backgroundColor === 'rgb(25, 113, 194)').map(button => button.textContent)"""
+    return page.page.evaluate(script)
+
+
 def test_two_nmea_files_and_a_csv_are_brought_to_a_run(
     fresh: Bench, session: Session, tmp_path: Path, pictures: Path
 ) -> None:
     fresh.tab("Files")
+    assert _main(fresh) == ["Upload a file"]
     for file in _track(tmp_path):
         fresh.upload(file)
         fresh.wait_until(lambda name=file.name: name in session.uploads.files)
         fresh.notice(f"{file.name}: NMEA 0183 log")
         fresh.close_notices()
+    assert _main(fresh) == ["Run on these files"]
     fresh.upload({"name": "log.csv", "mimeType": "text/csv", "buffer": _log()})
     assert "say what its columns mean" in fresh.notice("log.csv is kept")
     fresh.close_notices()
@@ -57,10 +66,12 @@ def test_two_nmea_files_and_a_csv_are_brought_to_a_run(
     fresh.choose("means", "speed through water")
     fresh.choose("unit", "kn")
     fresh.page.screenshot(path=pictures / "named.png")
+    assert _main(fresh) == ["Read by these columns"]
     with fresh.next_run():
         fresh.button("Read by these columns").click()
     assert "The duration is the 300 s" in fresh.notice("all uploaded streams share")
     fresh.page.screenshot(path=pictures / "run.png")
+    assert _main(fresh) == ["Run on these files"]
     assert (session.scenario.motion.kind, session.scenario.reference.kind) == ("track", "file")
     log = session.uploads.files["log.csv"]
     assert log.quantities == {"water"} and log.mapped

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from navcore.foundation.text import Text
@@ -27,10 +27,12 @@ class Columns:
     ----------
     frame : Frame
         Of the page.
+    mark : callable
+        Called when `waits` may have changed.
     """
 
-    def __init__(self, frame: Frame) -> None:
-        self._frame, self._session = frame, frame.session
+    def __init__(self, frame: Frame, mark: Callable[[], None]) -> None:
+        self._frame, self._session, self._mark = frame, frame.session, mark
         self._upload: Upload | None = None
         self._data: Mapping[str, Any] = {}
 
@@ -88,6 +90,12 @@ class Columns:
         self._file.visible = len(names) > 1
         self._take(tables[self._file.value])
 
+    @property
+    def waits(self) -> bool:
+        """Whether the table in view is still to be read by these columns."""
+        upload = self._upload
+        return upload is not None and (bool(upload.faults) or self._data != upload.map)
+
     def _other_file(self) -> None:
         with self._session.lock:
             self._take(self._session.uploads.files[self._file.value])
@@ -124,6 +132,8 @@ class Columns:
         self._shown.content = _overview(upload, data, column)
         samples = upload.table.samples[upload.table.header.index(column)]
         self._plot.content = _plot(column, samples)
+        self._use.color = None if self.waits else "gray"
+        self._mark()
 
     def _change(self, data: Mapping[str, Any]) -> None:
         self._data = data

@@ -19,7 +19,7 @@ class FilesView(View):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._columns = Columns(frame)
+        self._columns = Columns(frame, self._mark)
         add, opening = frame.commands.register, frame.opening
         add("save", lambda _: opening.give_file(SCENARIO), Text("Save the scenario (TOML)"), "Ctrl+S")
         add("save-numbers", lambda _: opening.give_file(METRICS), Text("Save the numbers (JSON)"))
@@ -39,7 +39,7 @@ class FilesView(View):
                 largest_file=LARGEST_FILE / MIB,
             )
             gui.add_html(notices.small(kinds), order=1)
-            upload = gui.add_upload_button(Text("Upload a file"), hint=kinds, order=2)
+            self._upload = upload = gui.add_upload_button(Text("Upload a file"), hint=kinds, order=2)
             self._list = gui.add_html("", order=3)
             self._use = gui.add_button(Text("Run on these files"), order=4, visible=False)
             self._forget = gui.add_button(Text("Remove the files"), color="gray", order=5, visible=False)
@@ -62,6 +62,13 @@ class FilesView(View):
         self._forget.visible = bool(uploads.files)
         self._use.visible = any(not upload.faults for upload in uploads.files.values())
         self._columns.follow()
+        self._mark()
+
+    def _mark(self) -> None:
+        """Give the button that comes next the colour of the main one: a file, its columns or the run."""
+        runs, waits = self._use.visible, self._columns.waits
+        self._upload.color = "gray" if runs or waits else None
+        self._use.color = "gray" if waits else None
 
 
 def _entry(name: str, upload: Upload) -> str:
