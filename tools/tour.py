@@ -193,8 +193,8 @@ def upload(bench: Bench) -> None:
     table = f"utc;fahrt\n{log}".encode()
     bench.upload({"name": "bridge-log.csv", "mimeType": "text/csv", "buffer": table})
     bench.notice("bridge-log.csv is kept")
-    for field, choice in (("column", "fahrt"), ("means", "speed through water"), ("unit", "kn")):
-        bench.choose(field, choice)
+    for label, choice in (("column", "fahrt"), ("means", "speed through water"), ("unit", "kn")):
+        bench.choose(label, choice)
     with bench.next_run():
         bench.button("Read by these columns").click()
     bench.close_notices()

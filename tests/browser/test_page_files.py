@@ -35,8 +35,9 @@ def _log() -> bytes:
 
 def _main(page: Bench) -> list[str]:
     """Texts of the buttons in view that have the colour of the main one."""
-    script = """() => [...document.querySelectorAll('button')].filter(button => button.offsetParent
-      && getComputedStyle(button).backgroundColor === 'rgb(25, 113, 194)').map(button => button.textContent)"""
+    script = """() => [...document.querySelectorAll('button')]
+      .filter(one => one.offsetParent && getComputedStyle(one).backgroundColor === 'rgb(25, 113, 194)')
+      .map(one => one.textContent)"""
     return page.page.evaluate(script)
 
 
