@@ -200,21 +200,51 @@ def test_forced_colours_leave_legends_and_slider_tracks(fresh: Bench) -> None:
         page.emulate_media(forced_colors="none")
 
 
+WITHOUT_WEBGL = """
+const real = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return kind.includes("webgl") ? null : real.call(this, kind, ...rest);
+};
+"""
+"""As a browser without WebGL answers."""
+
+
 def test_without_webgl_the_page_comes_without_3d_and_says_so(another: Another) -> None:
     bench = another(1280, 720)
-    # as a browser without WebGL answers
-    bench.page.add_init_script(
-        """const real = HTMLCanvasElement.prototype.getContext;
-        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
-          return kind.includes("webgl") ? null : real.call(this, kind, ...rest);
-        };"""
-    )
+    bench.page.add_init_script(WITHOUT_WEBGL)
     bench.open()
     bench.page.get_by_text("No 3D view: this browser has no WebGL.").wait_for()
     bench.reset("zha-fast", "Errors", "Method", selected=2)
     bench.type("network.xi", "0.6")
     bench.tab("Metrics")
     assert bench.page.locator(".sb-t >> visible=true").count() > 0
+
+
+def test_without_webgl_the_map_is_drawn_flat_and_follows_the_time(another: Another) -> None:
+    bench = another(1366, 768)
+    bench.page.add_init_script(WITHOUT_WEBGL)
+    bench.open()
+    bench.reset("sikuliaq-like", "Errors", "Method", selected=2)
+    drawn = bench.page.locator(".sb-flat")
+    ends = [f"[data-line='/track/{name}']" for name in ("truth", "method0", "method1", "method2")]
+    for part in (*ends, "[data-ship='/ship']", "[data-ship='/computed']"):
+        drawn.locator(part).wait_for(state="attached")
+    # the picture lies within the view, above its caption, and so do all words of it
+    holds = """() => {
+      const box = one => one.getBoundingClientRect();
+      const [map, key] = ['.sb-flat', '.sb-key'].map(name => box(document.querySelector(name)));
+      const within = ({left, right, top, bottom}) =>
+        left >= map.left && right <= map.right && top >= map.top - 1 && bottom <= map.bottom + 1;
+      const parts = [...document.querySelectorAll('.sb-flat :is(text, path, rect)')];
+      return map.bottom <= key.top && parts.every(one => within(box(one)));
+    }"""
+    assert bench.page.evaluate(holds)
+    assert "48°10′N" in drawn.inner_text()
+    ship = drawn.locator("[data-ship='/ship']")
+    at_the_end = ship.get_attribute("transform")
+    bench.page.get_by_label("time in the run").fill("250")
+    bench.wait_until(lambda: ship.get_attribute("transform") != at_the_end)
+    assert not bench.page.locator(".sb-cameras").is_visible()
 
 
 def test_a_lost_context_is_told_and_the_page_goes_on(another: Another) -> None:
@@ -224,6 +254,7 @@ def test_a_lost_context_is_told_and_the_page_goes_on(another: Another) -> None:
           .getExtension("WEBGL_lose_context").loseContext()"""
     )
     bench.page.get_by_text("The 3D view is lost").wait_for()
+    bench.page.locator(".sb-flat [data-line='/track/truth']").wait_for(state="attached")
     bench.reset("zha-fast", "Errors", "Method", selected=2)
     bench.type("network.xi", "0.6")
     bench.faults.clear()  # the browser itself tells of the lost context

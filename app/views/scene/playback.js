@@ -10,8 +10,8 @@
   const NARROW_PX = 60; // narrower it is a rail
   const LOW_PX = 800; // lower, and small, it has room for one instrument
   const WITHOUT = {
-    missing: "No 3D view: this browser has no WebGL. Controls, plots and tables work.",
-    lost: "The 3D view is lost: the browser has taken its WebGL away. Controls, plots and tables work. Load the page again to get it back.",
+    missing: "No 3D view: this browser has no WebGL. The map is drawn flat.",
+    lost: "The 3D view is lost: the browser has taken its WebGL away. The map is drawn flat. Load the page again to get it back.",
   };
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
   let now = null;
@@ -125,8 +125,8 @@
   // The entries stay what they are while only their errors change: a click ends on the button on which it began.
   function showKey() {
     const without = WITHOUT[window.schuler.without3d];
-    const words = without !== undefined ? [without] : [now.caption, ...(soft ? ["; 3D drawn in software"] : [])];
-    write(find("caption"), words.map(window.schuler.say).join(""));
+    const drawn = without !== undefined ? [". ", without] : soft ? ["; 3D drawn in software"] : [];
+    write(find("caption"), [now.caption, ...drawn].map(window.schuler.say).join(""));
     const box = find("key");
     if (!stage.classList.contains("sb-alone")) return; // the strip of results is the legend
     const names = now.key.map((each) => each.key).join("\n");
