@@ -1,5 +1,6 @@
 """Heavy jobs in processes of their own: they leave the server's interpreter alone, stand still and end."""
 
+import gc
 import os
 import signal
 import threading
@@ -186,6 +187,21 @@ def begun(name: str) -> Search[Any, Any]:
     return search
 
 
+@pytest.fixture
+def at_rest() -> Iterator[None]:
+    """Let the process do nothing else: no threads of earlier tests, no collection of what they have left."""
+    gc.collect()
+    gc.disable()
+    for _ in range(50):
+        before_s = time.process_time()
+        time.sleep(0.1)
+        if time.process_time() - before_s < 0.01:
+            break
+    yield
+    gc.enable()
+
+
+@pytest.mark.usefixtures("at_rest")
 @pytest.mark.parametrize(
     "name", ["fronts", "setting", "budget", "verification", "why", "table", "seeds", "covariance"]
 )
