@@ -16,8 +16,7 @@ from navcore.study.results import Folder
 from schuler_bench.cli import main
 from tests.studies import LATITUDE, NOISE, SHIP, stored, write
 
-SEEDS = 40
-KILLS, RUNS = 20, 2 * 8 * SEEDS
+KILLS, RUNS = 20, 2 * 8 * 60
 
 
 def command(study: str, folder: Path, workers: str = "1") -> subprocess.Popen[bytes]:
@@ -46,7 +45,7 @@ def further(process: subprocess.Popen[bytes], folder: Path, within_s: float) -> 
 @pytest.mark.timeout(400)
 def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
     scenario = {**SHIP, "run": {"duration_h": 24.0, "seed": 7}}
-    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": SEEDS}
+    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": 60}
     study = write(tmp_path / "study.toml", scenario=scenario, **blocks)
     folder = tmp_path / "killed"
     chance = random.Random(26)

@@ -35,7 +35,7 @@ _TILT: dict[str, tuple[float, ...]] = {MAP: (78.0, 72.0, 66.0, 58.0, 50.0), TOP:
 """Elevation of the camera above the map, deg: the first at which the map's width fills the view."""
 _ROOM = 1.1
 """Scene units east and west of the map for its labels, at least."""
-_LATITUDE_PX = 35
+_LATITUDE_PX = 32
 """Half the width of a label of latitude with its ground, down to arc-seconds; it is as wide from afar."""
 _SOUTH, _NORTH = -HALF_WIDTH - 1.4, HALF_WIDTH + 0.5
 """How far labels and scale bar, and the arrow to the north, reach beyond the map's edges."""
