@@ -2,8 +2,8 @@
 // as pinned: tests/browser/test_page_details.py looks at the result.
 (() => {
   const PERIOD_MS = 200;
-  const [HALF, NORTH, SOUTH] = [5, 5.9, -6.9]; // of the sea, of the arrow to the north, of the scale bar: scene units
   const [LATITUDE_PX, RIGHT_PX] = [66, 14];
+  const BEYOND = 0.4; // scene units beyond the northernmost and the southernmost label
   const ORDER = ["/map/", "/track/", "/trail/", "/error/"];
   const SHIP = [[0, 9], [3.5, 3], [3.5, -8], [-3.5, -8], [-3.5, 3]]; // px
   const HEADING = [[0, 9], [0, 24]];
@@ -20,13 +20,18 @@
   const path = (places) => places.map(([x, y], k) => `${k % 2 ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
 
   function draw(width, height, tree, poses) {
+    const words = Object.entries(tree).filter(([name]) => name.startsWith("/map/labels"))
+      .map(([name, node]) => [node.message.props.text, ...(poses[name]?.position ?? [0, 0])]);
+    const half = Math.max(...Object.values(tree["/map/sea"].message.props.vertices));
+    const ends = words.map(([, , y]) => y).concat(half, -half);
+    const [north, south] = [Math.max(...ends) + BEYOND, Math.min(...ends) - BEYOND];
     const across = width - LATITUDE_PX - RIGHT_PX;
-    const scale = Math.min(across / (2 * HALF), height / (NORTH - SOUTH));
-    const [left, top] = [LATITUDE_PX + across / 2, (height + scale * (NORTH + SOUTH)) / 2];
+    const scale = Math.min(across / (2 * half), height / (north - south));
+    const [left, top] = [LATITUDE_PX + across / 2, (height + scale * (north + south)) / 2];
     const at = (x, y) => [left + scale * x, top - scale * y];
-    const [west, north] = at(-HALF, HALF);
-    const side = 2 * HALF * scale;
-    const sea = make("rect", { x: west, y: north, width: side, height: side, fill: "#d9e4ee" });
+    const [x, y] = at(-half, half);
+    const side = 2 * half * scale;
+    const sea = make("rect", { x, y, width: side, height: side, fill: "#d9e4ee" });
 
     const line = (name, { points, colors, thickness }) => {
       const places = [];
@@ -38,13 +43,12 @@
       Object.entries(tree).filter(([name, node]) => name.startsWith(group) && node.message.props.points && node.visibility !== false)
         .map(([name, node]) => line(name, node.message.props)));
 
-    const labels = Object.entries(tree).filter(([name]) => name.startsWith("/map/labels")).map(([name, node]) => {
-      const [x, y] = poses[name]?.position ?? [0, 0];
-      const beside = x < -HALF && Math.abs(y) <= HALF; // a latitude
+    const labels = words.map(([text, x, y]) => {
+      const beside = x < -half && Math.abs(y) <= half; // a latitude
       const [px, py] = at(x, y);
-      const [anchor, baseline] = [beside ? "end" : "middle", y < -HALF ? "hanging" : "central"];
+      const [anchor, baseline] = [beside ? "end" : "middle", y < -half ? "hanging" : "central"];
       const place = { x: px.toFixed(1), y: py.toFixed(1), "text-anchor": anchor, "dominant-baseline": baseline };
-      return make("text", place, node.message.props.text);
+      return make("text", place, text);
     });
 
     // Turned as its bow points on the map.
@@ -65,12 +69,13 @@
   }
 
   setInterval(() => {
+    const flat = Boolean(window.schuler.without3d);
+    if (!flat && before.length === 0) return;
     const stage = document.getElementById("sb-stage");
     const tree = window.__viserSceneTree?.getState();
     const poses = window.__viserMutable?.nodePoseData;
-    if (stage === null || !tree || !poses) return;
+    if (stage === null || !tree?.["/map/sea"] || !poses) return;
     let box = stage.querySelector(":scope > .sb-flat");
-    const flat = Boolean(window.schuler.without3d);
     if (flat && box === null) {
       box = document.createElement("div");
       box.className = "sb-flat";
