@@ -100,7 +100,7 @@ class StaticRecord:
             ImuSimulation(StaticMotion(), SITE, WGS84, imu, RATE_HZ, self.samples, seed + lane)
             for lane, imu in enumerate(imus)
         ]
-        yield from side_by_side(still, WIDTH)
+        return side_by_side(still, WIDTH)
 
     def _batch_seconds(self, lanes: Sequence[Iterable[np.ndarray]]) -> float:
         settings, log = self._started(self.second)
