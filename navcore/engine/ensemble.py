@@ -15,16 +15,15 @@ import numpy as np
 from navcore.engine.drivers.common import law_of, network_of, requirement_spans, seen_by
 from navcore.engine.drivers.kalman import Gains
 from navcore.engine.drivers.linear import carried_out
-from navcore.engine.environment import Environment, environment
+from navcore.engine.environment import Environment, environment, environment_side_by_side
 from navcore.engine.run import Span, spans
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG_PER_HOUR, MICRO_G
-from navcore.mechanization.error_batch import WIDTH, ErrorModelBatch, one_behind_the_other
+from navcore.mechanization.error_batch import WIDTH, ErrorModelBatch
 from navcore.mechanization.recorder import FINAL, POSITION
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import stochastic_model
-from navcore.sensors.base import SensorErrors
 
 SEARCHED = 1_000_000
 """Added to the seed of a run by what a search draws, so that it never meets what judges it."""
@@ -198,36 +197,31 @@ def _linear(
 ) -> list[tuple[Outcome, ...]]:
     if report(0.0):
         return []
-    inputs, each = [_inputs(one) for one in scenarios], scenarios[0].method
-    sensors = one_behind_the_other([env.sensors for env, _ in inputs])
-    columns: list[list[Outcome]] = []
+    each, columns = scenarios[0].method, []
+    laws = len(scenarios) > 1 and any(method.kind.carrying == "law" for method in each)
+    env = environment_side_by_side(scenarios, WIDTH) if laws else None
     for k, method in enumerate(each):
-        if method.kind.carrying == "law" and len(scenarios) > 1:
-            columns.append(_side_by_side(scenarios[0], method, inputs, sensors))
+        if env and method.kind.carrying == "law":
+            columns.append(_side_by_side(scenarios, method, env))
         else:
-            pairs = zip(scenarios, inputs, strict=True)
-            columns.append([_outcome(told or one, method, *given, gains.get(k)) for one, given in pairs])
+            columns.append([_outcome(told or one, method, *_inputs(one), gains.get(k)) for one in scenarios])
         if report(len(scenarios) / len(each)):
             return []
     return [*zip(*columns, strict=True)]
 
 
-def _side_by_side(
-    scenario: Scenario,
-    method: Method,
-    inputs: Sequence[tuple[Environment, np.ndarray]],
-    sensors: SensorErrors,
-) -> list[Outcome]:
-    step_s, env = scenario.run.step_s, inputs[0][0]
+def _side_by_side(scenarios: Sequence[Scenario], method: Method, env: Environment) -> list[Outcome]:
+    one = scenarios[0]
+    step_s = one.run.step_s
     batch = ErrorModelBatch(
         step_s,
         env.steps,
         env.coefficients,
-        sensors,
-        [seen_by(method, env.reference) for env, _ in inputs],
-        law_of(method, network_of(scenario, method), step_s),
-        [state for _, state in inputs],
-        requirement_spans(scenario, step_s),
+        env.sensors,
+        seen_by(method, env.reference),
+        law_of(method, network_of(one, method), step_s),
+        [np.array(scenario.initial_error.state()) for scenario in scenarios],
+        requirement_spans(one, step_s),
     )
     batch.advance(env.steps + 1)
     lanes = zip(batch.diverged, batch.spans, batch.position_m.tolist(), strict=True)

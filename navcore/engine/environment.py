@@ -4,7 +4,7 @@ Kept by what each stage depends on, so that a slider on a network or policy reco
 a sensor error neither the truth nor its coefficients.
 """
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 from navcore.engine.notices import input_notices, site_notices
@@ -14,8 +14,8 @@ from navcore.mechanization.trajectory import Coefficients, coefficients
 from navcore.motion.truth import Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
-from navcore.sensors.imu import imu_errors
-from navcore.sensors.log import reference_errors
+from navcore.sensors.imu import imu_errors_side_by_side
+from navcore.sensors.log import reference_errors_side_by_side
 from navcore.sensors.recorded import recorded_window
 
 
@@ -97,33 +97,79 @@ def environment(scenario: Scenario) -> Environment:
     InputError
         The motion cannot be carried out, or a recording cannot serve the run.
     """
-    steps, h, earth = scenario.steps, scenario.run.step_s, scenario.earth
-    channel = scenario.run.fidelity == "channel"
-    truth_key = _truth_key(scenario, steps, h)
+    steps, h = scenario.steps, scenario.run.step_s
+    truth, truth_key = truth_of(scenario, steps, h), _truth_key(scenario, steps, h)
+    channel, seed = scenario.run.fidelity == "channel", scenario.run.seed
     log_key = (scenario.reference, recorded_state(scenario.reference))
-    seed = scenario.run.seed
-    start_utc = _start_utc(scenario)
 
-    def make_sensors() -> SensorErrors:
-        errors = imu_errors(scenario.imu.all_parts(), truth, steps, h, earth, seed, level_body=channel)
-        # `channel` has no heading: its up gyro drives nothing.
-        return SensorErrors(errors.gyro * (1.0, 1.0, 0.0), errors.accel) if channel else errors
-
-    def make_reference() -> ReferenceErrors:
-        try:
-            return reference_errors(scenario.reference, truth, steps * h, seed, step_s=h, start_utc=start_utc)
-        except InputError as error:
-            raise error.located("", "reference.") from None
-
-    truth = truth_of(scenario, steps, h)
     return Environment(
         steps=steps,
         truth_half=truth,
         coefficients=coefficients_of(scenario, steps, h),
         sensors=kept(
             ("sensors", truth_key, channel, scenario.imu, seed),
-            make_sensors,
+            lambda: _sensors([scenario], truth, 1).alone(),
         ),
-        reference=kept(("reference", truth_key, log_key, seed), make_reference),
+        reference=kept(
+            ("reference", truth_key, log_key, seed), lambda: _reference([scenario], truth, 1).alone()
+        ),
         warnings=(*input_notices(scenario), *site_notices(scenario, truth)),
     )
+
+
+def environment_side_by_side(scenarios: Sequence[Scenario], width: int) -> Environment:
+    """Make, or take from the cache, what all methods share on several seeds of one scenario.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        They differ in their seeds and constant errors alone.
+    width : int
+        Size of the last axis of all errors of the sensors and the log: a scenario each; places without one
+        repeat the first.
+
+    Raises
+    ------
+    InputError
+        As of `environment`.
+    """
+    one = scenarios[0]
+    steps, h = one.steps, one.run.step_s
+    truth, truth_key = truth_of(one, steps, h), _truth_key(one, steps, h)
+    each = tuple((scenario.imu, scenario.reference, scenario.run.seed) for scenario in scenarios)
+    key = "side by side", truth_key, one.run.fidelity, recorded_state(one.reference), each, width
+    sensors, reference = kept(
+        key, lambda: (_sensors(scenarios, truth, width), _reference(scenarios, truth, width))
+    )
+    return Environment(steps, truth, coefficients_of(one, steps, h), sensors, reference, ())
+
+
+def _sensors(scenarios: Sequence[Scenario], truth: Truth, width: int) -> SensorErrors:
+    """Errors of the inertial sensors of scenarios, shape (n, 3, width)."""
+    one = scenarios[0]
+    channel, seeds = one.run.fidelity == "channel", [scenario.run.seed for scenario in scenarios]
+    parts = [scenario.imu.all_parts() for scenario in scenarios]
+    errors = imu_errors_side_by_side(
+        parts, truth, one.steps, one.run.step_s, one.earth, seeds, width, level_body=channel
+    )
+    if channel:
+        errors.gyro[:, 2] = 0.0  # there is no heading: the up gyro drives nothing
+    return errors
+
+
+def _reference(scenarios: Sequence[Scenario], truth: Truth, width: int) -> ReferenceErrors:
+    """Errors of the reference velocities of scenarios, shape (m, 2, width)."""
+    one = scenarios[0]
+    references, seeds = zip(*((scenario.reference, scenario.run.seed) for scenario in scenarios), strict=True)
+    try:
+        return reference_errors_side_by_side(
+            references,
+            truth,
+            one.steps * one.run.step_s,
+            seeds,
+            width,
+            step_s=one.run.step_s,
+            start_utc=_start_utc(one),
+        )
+    except InputError as error:
+        raise error.located("", "reference.") from None

@@ -1,7 +1,8 @@
 """Many runs of the error model at once: the same motion and method, each run with its own errors and start.
 
-Runs are the inner, vectorised dimension, as in `navcore.mechanization.strapdown.batch`; every number comes
-out as in the single run, bit for bit. A batch keeps what an ensemble judges: spans and the last position.
+Runs are the inner, vectorised dimension, as in `navcore.mechanization.strapdown.batch`, in the errors of the
+sensors and the log too: so a step reads a few streams of memory, not five a run. Every number comes out as in
+the single run, bit for bit. A batch keeps what an ensemble judges: spans and the last position.
 """
 
 import math
@@ -18,8 +19,10 @@ from navcore.mechanization.error_model import (
     Held,
     LogErrors,
     correction,
+    hold_difference,
     in_range,
-    read_log,
+    log_is_valid,
+    newest_epoch,
     runge_kutta,
 )
 from navcore.mechanization.recorder import Errors, given_out, take_lengths
@@ -29,19 +32,17 @@ from navcore.sensors.base import ReferenceErrors, SensorErrors
 WIDTH = 8
 """Runs of a block."""
 _W = WIDTH
-# Rows of a block's flat state: the errors, then what is held over a step.
-_HELD, _ROWS = 7, 17
+# Rows of a block's flat state: the errors, then what is held over a step, of the sensors and of the law.
+_HELD, _LAW, _ROWS = 7, 12, 17
 
 
 class _Runs(NamedTuple):
-    """Records of each run, their errors one behind the other, and what they share."""
+    """Records of each run, and the log that they read at the same epochs."""
 
     p: np.ndarray  # of the laws
     s: np.ndarray
     ring: np.ndarray
-    gyro: np.ndarray  # (runs, n, 3)
-    accel: np.ndarray
-    log: LogErrors
+    log: LogErrors  # error: (m, 2, WIDTH)
     spans: np.ndarray  # `SPAN`, shape (runs, spans)
     position_m: np.ndarray
     diverged: np.ndarray
@@ -76,8 +77,18 @@ def _held_of(x, j):
 
 
 @inlined
-def _epoch(k, t, run, motion, begin, x, runs):
-    """Log, law and record of one run, lane of the same number, at step k; what is held until the next."""
+def _take_epoch(t, j, run, x, motion, log, s):
+    """Take the log epoch j, the newest at t, for one run with the `Errors` x."""
+    if j > s.epoch:
+        s.epoch = j
+        of_e, of_n = log.error[j, 0, run], log.error[j, 1, run]
+        hold_difference(x, motion.v_e, motion.v_n, of_e, of_n, log.body_frame, s)
+    s.valid = log_is_valid(t, j, log)
+
+
+@inlined
+def _epoch(k, t, run, motion, begin, x, runs, epoch):
+    """Log, law and record of one run, lane of the same number, at step k; log epoch ``epoch`` is in force."""
     errors = _errors_of(x, run)
     if not in_range(errors):
         runs.diverged[run] = True
@@ -85,45 +96,43 @@ def _epoch(k, t, run, motion, begin, x, runs):
             x[row * _W + run] = 0.0
     if runs.diverged[run]:
         return
-    logs, law = runs.log, Law(runs.p[run], runs.s[run], runs.ring[run])
-    log = LogErrors(logs.time_s[run], logs.error[run], logs.valid[run], logs.body_frame, logs.hold_s)
-    read_log(t, errors, motion.v_e, motion.v_n, log, law.s)
+    log, law = runs.log, Law(runs.p[run], runs.s[run], runs.ring[run])
+    _take_epoch(t, epoch, run, errors, motion, log, law.s)
     sensed = Sensed(motion.v_e + errors.dv_e, motion.v_n + errors.dv_n, motion.heading + errors.phi_u)
     c, c_u = correction(law, sensed, begin, errors)
     north, east = begin.m * errors.d_lat, begin.n_cos * errors.d_lon
     position = math.sqrt(north * north + east * east)
     runs.position_m[run] = position
     take_lengths(k, given_out(errors, law.s), position, runs.spans[run])
-    g = k if runs.gyro.shape[1] > 1 else 0
-    a = k if runs.accel.shape[1] > 1 else 0
-    if g < runs.gyro.shape[1] and a < runs.accel.shape[1]:  # there are none at the end
-        for axis in range(3):
-            x[(7 + axis) * _W + run] = runs.gyro[run, g, axis]
-        x[10 * _W + run], x[11 * _W + run] = runs.accel[run, a, 0], runs.accel[run, a, 1]
-    x[12 * _W + run], x[13 * _W + run], x[14 * _W + run], x[15 * _W + run] = c
-    x[16 * _W + run] = c_u
+    x[_LAW * _W + run], x[(_LAW + 1) * _W + run] = c.c_e, c.c_n
+    x[(_LAW + 2) * _W + run], x[(_LAW + 3) * _W + run], x[(_LAW + 4) * _W + run] = c.a_e, c.a_n, c_u
 
 
 @kernel
-def _advance_block(first, last, final, h, half, law_input, x, runs):
-    """Integrate steps first..last of 0..final for all runs of a block."""
+def _advance_block(first, last, final, h, half, law_input, gyro, accel, x, runs):
+    """Integrate steps first..last of 0..final for all runs of a block; ``gyro`` and ``accel`` are flat."""
     half_stride = 1 if half.shape[0] > 1 else 0
     law_stride = 1 if law_input.shape[0] > 1 else 0
+    gyro_stride = 3 * _W if gyro.shape[0] > 3 * _W else 0
+    accel_stride = 3 * _W if accel.shape[0] > 3 * _W else 0
+    epoch = -1
     for k in range(first, last):
         record = half[2 * k * half_stride]
+        epoch = newest_epoch(k * h, epoch, runs.log.time_s)
         for run in range(runs.p.shape[0]):
-            _epoch(k, k * h, run, law_input[k * law_stride], record, x, runs)
+            _epoch(k, k * h, run, law_input[k * law_stride], record, x, runs, epoch)
         if k == final:
             return
         begin = _half(record)
         middle, end = _half(half[(2 * k + 1) * half_stride]), _half(half[(2 * k + 2) * half_stride])
+        of_gyro, of_accel = gyro[k * gyro_stride :], accel[k * accel_stride :]
+        # into the state first: where the steps themselves read a second array, LLVM does not vectorise them
+        for j in range(3 * _W):
+            x[_HELD * _W + j] = of_gyro[j]
+        for j in range(2 * _W):
+            x[(_HELD + 3) * _W + j] = of_accel[j]
         for j in range(_W):
             _keep_errors(x, j, runge_kutta(_errors_of(x, j), h, begin, middle, end, _held_of(x, j)))
-
-
-def one_behind_the_other(sensors: Sequence[SensorErrors]) -> SensorErrors:
-    """Put the sensor errors of several runs, with as many rows each, into arrays of shape (runs, n, 3)."""
-    return SensorErrors(np.stack([each.gyro for each in sensors]), np.stack([each.accel for each in sensors]))
 
 
 class ErrorModelBatch:
@@ -138,9 +147,9 @@ class ErrorModelBatch:
     coefficients : Coefficients
         Along the motion that all share.
     sensors : SensorErrors
-        Of all runs one behind the other, shapes (runs, n, 3): `one_behind_the_other`.
-    references : sequence of ReferenceErrors
-        One a run, with as many epochs each.
+        Of all runs side by side, shapes (n, 3, WIDTH).
+    reference : ReferenceErrors
+        Likewise: the errors have shape (m, 2, WIDTH).
     law : Law
         Of the method, as each run begins with it.
     starts : sequence of ndarray, shape (7,)
@@ -169,7 +178,7 @@ class ErrorModelBatch:
         steps: int,
         coefficients: Coefficients,
         sensors: SensorErrors,
-        references: Sequence[ReferenceErrors],
+        reference: ReferenceErrors,
         law: Law,
         starts: Sequence[np.ndarray],
         spans: np.ndarray,
@@ -178,20 +187,19 @@ class ErrorModelBatch:
             raise ValueError(f"a batch has at most {WIDTH} runs, not {runs}")
         self._step_s, self._steps, self._position = step_s, steps, 0
         self._coefficients = coefficients
+        self._gyro, self._accel = sensors.gyro.reshape(-1), sensors.accel.reshape(-1)
         self.spans = np.tile(spans[spans["first"] <= steps], (runs, 1))
         self.position_m, self.diverged = np.zeros(runs), np.zeros(runs, bool)
         self._runs = _Runs(
             p=stacked([law.p] * runs, LAW_PARAMETERS),
             s=stacked([law.s] * runs, LAW_STATE),
             ring=np.stack([law.ring] * runs),
-            gyro=sensors.gyro,
-            accel=sensors.accel,
             log=LogErrors(
-                np.stack([log.time_s for log in references]),
-                np.stack([log.error for log in references]),
-                np.stack([log.valid for log in references]),
-                references[0].body_frame,
-                float(references[0].hold_s),
+                reference.time_s,
+                reference.error,
+                reference.valid,
+                reference.body_frame,
+                float(reference.hold_s),
             ),
             spans=self.spans,
             position_m=self.position_m,
@@ -205,6 +213,9 @@ class ErrorModelBatch:
         """Integrate up to ``steps`` further steps; return True when the runs are complete."""
         last = min(self._position + steps, self._steps + 1)
         c = self._coefficients
-        _advance_block(self._position, last, self._steps, self._step_s, c.half, c.law, self._x, self._runs)
+        _advance_block(
+            self._position, last, self._steps, self._step_s, c.half, c.law, self._gyro, self._accel,
+            self._x, self._runs,
+        )  # fmt: skip
         self._position = last
         return last > self._steps

@@ -32,7 +32,7 @@ VELOCITY_LIMIT = 1e5
 
 
 class LogErrors(NamedTuple):
-    """Errors of the reference velocity, as `navcore.sensors.base.ReferenceErrors`."""
+    """Errors of the reference velocity, as `navcore.sensors.base.ReferenceErrors`; of a batch with lanes."""
 
     time_s: np.ndarray
     error: np.ndarray
@@ -125,22 +125,38 @@ def runge_kutta(x, h, begin, middle, end, held):
 
 
 @inlined
-def read_log(t, x, v_e, v_n, log, s):
-    """Take the newest log epoch at or before t and hold its difference V_r - V_c (contract, log samples)."""
-    j = s.epoch
-    fresh = False
-    while j + 1 < log.time_s.shape[0] and log.time_s[j + 1] <= t + 1e-9:
+def newest_epoch(t, j, time_s):
+    """Index of the newest log epoch at or before t, from the index j on (contract, log samples)."""
+    while j + 1 < time_s.shape[0] and time_s[j + 1] <= t + 1e-9:
         j += 1
-        fresh = True
-    s.epoch = j
-    if fresh:
-        d_e = log.error[j, 0] - x.dv_e
-        d_n = log.error[j, 1] - x.dv_n
-        if log.body_frame:
-            d_e += x.phi_u * v_n
-            d_n -= x.phi_u * v_e
-        s.difference[E], s.difference[N] = d_e, d_n
-    s.valid = j >= 0 and log.valid[j] and t - log.time_s[j] <= log.hold_s
+    return j
+
+
+@inlined
+def hold_difference(x, v_e, v_n, error_e, error_n, body_frame, s):
+    """Hold the difference V_r - V_c of a new log epoch."""
+    d_e = error_e - x.dv_e
+    d_n = error_n - x.dv_n
+    if body_frame:
+        d_e += x.phi_u * v_n
+        d_n -= x.phi_u * v_e
+    s.difference[E], s.difference[N] = d_e, d_n
+
+
+@inlined
+def read_log(t, x, v_e, v_n, log, s):
+    """Take the newest log epoch at t."""
+    j = newest_epoch(t, s.epoch, log.time_s)
+    if j > s.epoch:
+        s.epoch = j
+        hold_difference(x, v_e, v_n, log.error[j, 0], log.error[j, 1], log.body_frame, s)
+    s.valid = log_is_valid(t, j, log)
+
+
+@inlined
+def log_is_valid(t, j, log):
+    """Whether the log epoch j counts at t."""
+    return j >= 0 and log.valid[j] and t - log.time_s[j] <= log.hold_s
 
 
 @inlined

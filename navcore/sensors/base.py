@@ -1,7 +1,7 @@
 """Common parts of the terms of a sensor's error, and the errors as the mechanizations take them."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -76,6 +76,8 @@ def modelled_drift(parts: Iterable[ErrorPart]) -> ErrorPart | None:
 class SensorErrors:
     """Inertial sensor errors turned to the navigation frame, mean over each step.
 
+    Of sensors side by side each array has a further axis, one place a set of sensors.
+
     Attributes
     ----------
     gyro : ndarray, shape (n, 3), or (1, 3) when constant
@@ -87,6 +89,10 @@ class SensorErrors:
     gyro: np.ndarray
     accel: np.ndarray
 
+    def alone(self) -> "SensorErrors":
+        """Return the first of sensors side by side."""
+        return SensorErrors(self.gyro[:, :, 0], self.accel[:, :, 0])
+
 
 @dataclass(frozen=True)
 class ReferenceErrors:
@@ -97,7 +103,8 @@ class ReferenceErrors:
     time_s : ndarray, shape (m,)
         Epochs, s after the start of navigation, increasing.
     error : ndarray, shape (m, 2)
-        V_r minus the true velocity, E and N, m/s, as far as it does not depend on the computed heading.
+        V_r minus the true velocity, E and N, m/s, as far as it does not depend on the computed heading. Of
+        logs side by side (m, 2, width), one place a log.
     valid : ndarray of bool, shape (m,)
         False while the log gives nothing (outage, invalid flag).
     body_frame : bool
@@ -115,3 +122,7 @@ class ReferenceErrors:
     body_frame: bool
     hold_s: float
     moored: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    def alone(self) -> "ReferenceErrors":
+        """Return the first of logs side by side."""
+        return replace(self, error=self.error[:, :, 0])

@@ -1,7 +1,7 @@
 """The inertial measurement unit: its errors as a scenario gives them, and their effect along a motion."""
 
 import weakref
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextvars import copy_context
 from functools import lru_cache
@@ -134,26 +134,60 @@ def imu_errors(
     ValueError
         The truth has neither 2 count + 1 rows nor one.
     """
+    return imu_errors_side_by_side([parts], truth_half, count, step_s, earth, [seed], 1, level_body).alone()
+
+
+def imu_errors_side_by_side(
+    parts: Sequence[Iterable[Part]],
+    truth_half: Truth,
+    count: int,
+    step_s: float,
+    earth: Earth,
+    seeds: Sequence[int],
+    width: int,
+    level_body: bool = False,
+) -> SensorErrors:
+    """Errors of several IMUs on one motion, as `imu_errors`, with the IMUs as the last axis.
+
+    Parameters
+    ----------
+    parts, seeds : sequence
+        One an IMU. They differ in their constant errors and their seeds alone.
+    truth_half, count, step_s, earth, level_body
+        As of `imu_errors`.
+    width : int
+        Size of the last axis. Places without an IMU repeat the first.
+
+    Returns
+    -------
+    SensorErrors
+        Arrays of shape (count, 3, width), or (1, 3, width) when constant in time.
+
+    Raises
+    ------
+    ValueError
+        As of `imu_errors`.
+    """
     rows = truth_half.values.shape[0]
     if rows not in (1, 2 * count + 1):
         raise ValueError(f"{count} steps need 1 or {2 * count + 1} rows of truth at half steps, not {rows}")
-    parts = tuple(parts)
-    models = Triad("gyro", parts), Triad("accel", parts)
-    clock = Clock(step_s, count, seed)
+    each = [tuple(one) for one in parts]
+    sensors = [[Triad(name, one) for one in each] for name in ("gyro", "accel")]
+    clocks = [Clock(step_s, count, seed) for seed in seeds]
     values = truth_half.values
     signal = coupled = np.zeros((2, 1, 3))
-    if any(model.measures_motion for model in models):
+    if any(models[0].measures_motion for models in sensors):
         signal, coupled = np.empty((2, 2, 1 if rows == 1 else count, 3))
-        coupling = np.stack([model.coupling for model in models])
+        coupling = np.stack([models[0].coupling for models in sensors])
         constants = (earth.e2, earth.g_equator, earth.somigliana_k)
         scaled_signals(values, level_body, *constants, coupling, signal, coupled)
-    level = level_body or all(model.perfect for model in models)
+    level = level_body or all(model.perfect for models in sensors for model in models)
     # Gyros, accelerometers and attitude at the same time: of a new seed this is a fifth of the whole run.
     with ThreadPoolExecutor(2) as pool:
         turning = pool.submit(copy_context().run, _attitude, truth_half, count, level)
         errors = [
-            pool.submit(_navigation_errors, model, turning, signal[i], coupled[i], clock)
-            for i, model in enumerate(models)
+            pool.submit(_navigation_errors, models, turning, signal[i], coupled[i], clocks, width)
+            for i, models in enumerate(sensors)
         ]
         return SensorErrors(errors[0].result(), errors[1].result())
 
@@ -176,14 +210,19 @@ def _mean_attitude(values: np.ndarray, count: int) -> np.ndarray:
 
 
 def _navigation_errors(
-    model: Triad, turned_by: Future[np.ndarray], signal: np.ndarray, coupled: np.ndarray, clock: Clock
+    models: Sequence[Triad],
+    turned_by: Future[np.ndarray],
+    signal: np.ndarray,
+    coupled: np.ndarray,
+    clocks: Sequence[Clock],
+    width: int,
 ) -> np.ndarray:
-    """Errors of three gyros or accelerometers in the navigation frame, shape (count, 3) or (1, 3)."""
-    if model.perfect:
-        return np.zeros((1, 3))
-    body = model.body_errors(signal, clock)
+    """Errors of gyros or accelerometers in the navigation frame, shape (count, 3, width) or (1, 3, width)."""
+    if all(model.perfect for model in models):
+        return np.zeros((1, 3, width))
+    body = np.stack([model.body_errors(signal, clock) for model, clock in zip(models, clocks, strict=True)])
     turning = turned_by.result()
-    moving = turning.shape[0] > 1 or (coupled.shape[0] > 1 and bool(model.coupling.any()))
-    error = np.array(np.broadcast_to(body, (clock.count if moving else len(body), 3)), order="C")
-    turn_errors(turning, coupled, error)
-    return error
+    moving = turning.shape[0] > 1 or (coupled.shape[0] > 1 and bool(models[0].coupling.any()))
+    errors = np.empty((clocks[0].count if moving else body.shape[1], 3, width))
+    turn_errors(turning, coupled, body, errors)
+    return errors

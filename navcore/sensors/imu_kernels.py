@@ -111,16 +111,20 @@ def add_quantisation(signal, coupling, lsb, step, error):
 
 
 @kernel
-def turn_errors(turning, coupled, error):
-    """Turn errors from body axes to the navigation frame in place, and add those that are there already.
+def turn_errors(turning, coupled, body, errors):
+    """Turn errors from body axes to the navigation frame, and add those that are there already.
 
-    ``turning`` is C_b^n row by row.
+    ``turning`` is C_b^n row by row, ``body`` (IMUs, n, 3), ``errors`` (n, 3, width): places beyond the IMUs
+    repeat the first.
     """
     turn_stride = 1 if turning.shape[0] > 1 else 0
     coupled_stride = 1 if coupled.shape[0] > 1 else 0
-    for i in range(error.shape[0]):
-        x, y, z = error[i, 0], error[i, 1], error[i, 2]
-        c, extra = i * turn_stride, i * coupled_stride
-        for j in range(3):
-            total = turning[c, 3 * j] * x + turning[c, 3 * j + 1] * y + turning[c, 3 * j + 2] * z
-            error[i, j] = total + coupled[extra, j]
+    body_stride = 1 if body.shape[1] > 1 else 0
+    for i in range(errors.shape[0]):
+        b, c, extra = i * body_stride, i * turn_stride, i * coupled_stride
+        for place in range(errors.shape[2]):
+            imu = place if place < body.shape[0] else 0
+            x, y, z = body[imu, b, 0], body[imu, b, 1], body[imu, b, 2]
+            for j in range(3):
+                total = turning[c, 3 * j] * x + turning[c, 3 * j + 1] * y + turning[c, 3 * j + 2] * z
+                errors[i, j, place] = total + coupled[extra, j]

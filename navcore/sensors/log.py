@@ -1,12 +1,15 @@
 """Errors of the reference velocity at its own epochs, simulated or recorded."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.recorded import recorded_errors
 from navcore.sensors.reference import Reference
-from navcore.sensors.simulated_log import simulated_errors
+from navcore.sensors.simulated_log import simulated_errors, simulated_side_by_side
 
 
 def reference_errors(
@@ -48,3 +51,41 @@ def reference_errors(
     return simulated_errors(
         reference, truth, duration_s, seed, 2.0 * truth.step_s if step_s is None else step_s
     )
+
+
+def reference_errors_side_by_side(
+    references: Sequence[Reference],
+    truth: Truth,
+    duration_s: float,
+    seeds: Sequence[int],
+    width: int,
+    *,
+    step_s: float,
+    start_utc: float | None = None,
+) -> ReferenceErrors:
+    """Errors of several reference velocities on one motion, with the logs as the last axis.
+
+    Parameters
+    ----------
+    references, seeds : sequence
+        One a log. They differ in their constant errors and their seeds alone.
+    truth, duration_s, step_s, start_utc
+        As of `reference_errors`.
+    width : int
+        Size of the last axis. Places without a log repeat the first.
+
+    Returns
+    -------
+    ReferenceErrors
+        With errors of shape (m, 2, width).
+
+    Raises
+    ------
+    InputError
+        As of `reference_errors`.
+    """
+    if references[0].kind == "log":
+        return simulated_side_by_side(references, truth, duration_s, seeds, step_s, width)
+    # neither a recorded log nor none draws anything: it is the same for every seed
+    one = reference_errors(references[0], truth, duration_s, seeds[0], step_s=step_s, start_utc=start_utc)
+    return replace(one, error=np.repeat(one.error[:, :, None], width, axis=2))

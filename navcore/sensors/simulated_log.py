@@ -3,13 +3,14 @@
 import hashlib
 import math
 import weakref
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from navcore.foundation.compiled import kernel
 from navcore.foundation.stage_cache import kept
 from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
@@ -21,7 +22,6 @@ from navcore.sensors.true_state import (
     heading_rate,
     horizontal_acceleration,
     horizontal_state,
-    to_navigation,
     to_ship,
     turned,
 )
@@ -90,32 +90,91 @@ def simulated_errors(
     -------
     ReferenceErrors
     """
+    given = None if parts is None else [parts]
+    return simulated_side_by_side([reference], truth, duration_s, [seed], step_s, 1, given).alone()
+
+
+def simulated_side_by_side(
+    references: Sequence[Reference],
+    truth: Truth,
+    duration_s: float,
+    seeds: Sequence[int],
+    step_s: float,
+    width: int,
+    parts: Sequence[Iterable[LogPart]] | None = None,
+) -> ReferenceErrors:
+    """Errors of several simulated logs on one motion, as `simulated_errors`, with the logs as the last axis.
+
+    Parameters
+    ----------
+    references, seeds, parts : sequence
+        One a log. They differ in their constant errors and their seeds alone.
+    truth, duration_s, step_s
+        As of `simulated_errors`.
+    width : int
+        Size of the last axis. Places without a log repeat the first.
+
+    Returns
+    -------
+    ReferenceErrors
+        With errors of shape (m, 2, width).
+    """
+    reference = references[0]
     samples, interval, time_s = _epochs(reference, duration_s, step_s)
-    log = _active(reference, reference.all_parts() if parts is None else parts)
-    own, lsb = log.own(time_s.size, interval, seed, samples)
-    if log.delay_s == log.smoothing_s == lsb == 0.0:
-        error = log.linear_errors(truth, time_s, own)
-    else:
-        key = "log readings", weakref.ref(truth), reference, duration_s, step_s
-        make = partial(log.readings, truth, time_s)
-        readings = kept(key, make) if parts is None else make()
-        error = log.rounded_errors(readings, own, lsb)
-    error = sum((part.after(time_s) for part in log.parts if part.after), error)
+    each = [one.all_parts() for one in references] if parts is None else parts
+    logs = [_active(reference, one) for one in each]
+    log = logs[0]
+    noise, lsb = log.noise(samples)
+    own = np.stack(
+        [
+            np.broadcast_to(one.own(time_s.size, interval, seed, noise), (time_s.size, 2))
+            for one, seed in zip(logs, seeds, strict=True)
+        ]
+    )
+    key = "log readings", weakref.ref(truth), reference, duration_s, step_s
+    make = partial(log.readings, truth, time_s, lsb)
+    readings = kept(key, make) if parts is None else make()
+    error = np.empty((time_s.size, 2, width))
+    _read(readings.along_axes, own, lsb, readings.turn, readings.rest, error)
+    for part in log.parts:
+        if part.after:
+            error += part.after(time_s)[:, :, None]
     valid = log_works(reference, truth, time_s)
     still = np.zeros(0, dtype=bool)
     if reference.zero_below_mps > 0.0:
         still = np.array(np.broadcast_to(moored(reference, truth, time_s), time_s.size))
-        error = np.where(still[:, None], -_true_state(truth, time_s)[0], error)
+        error = np.where(still[:, None, None], -_true_state(truth, time_s)[0][:, :, None], error)
         valid |= still
     return ReferenceErrors(
         time_s=time_s,
-        # A copy: one that may not be written to would make numba compile the kernels a second time.
-        error=np.array(np.broadcast_to(error, (time_s.size, 2)), order="C"),
+        error=error,
         valid=valid,
         body_frame=log.body_frame,
         hold_s=hold_time(interval),
         moored=still,
     )
+
+
+@kernel
+def _read(along_axes, own, lsb, turn, rest, error):
+    """Errors (m, 2, width) of readings of logs whose ``own`` errors (logs, m, 2) are given.
+
+    The others are those of `_Readings`: shapes (m, 2) or (1, 2), ``turn`` also (0, 2).
+    """
+    along_stride = 1 if along_axes.shape[0] > 1 else 0
+    rest_stride = 1 if rest.shape[0] > 1 else 0
+    turn_stride = 1 if turn.shape[0] > 1 else 0
+    for i in range(error.shape[0]):
+        a, r, c = i * along_stride, i * rest_stride, i * turn_stride
+        for place in range(error.shape[2]):
+            log = place if place < own.shape[0] else 0
+            x, y = along_axes[a, 0] + own[log, i, 0], along_axes[a, 1] + own[log, i, 1]
+            if lsb >= _FINEST_LSB:
+                x, y = np.rint(x / lsb) * lsb, np.rint(y / lsb) * lsb
+            if turn.shape[0] > 0:
+                sine, cosine = turn[c, 0], turn[c, 1]
+                x, y = x * cosine + y * sine, y * cosine - x * sine
+            error[i, 0, place], error[i, 1, place] = x + rest[r, 0], y + rest[r, 1]
 
 
 def mean_rounding_of(
@@ -141,13 +200,12 @@ def mean_rounding_of(
     if samples > 1.0 and reference.dither >= DITHERED * log.lsb:
         return time_s, []
     sigma, errors = reference.dither / math.sqrt(samples), []
-    still = _Log(tuple(replace(part, white=0.0) for part in log.parts), log.body_frame)
-    readings = log.readings(truth, time_s)
+    readings = log.readings(truth, time_s, log.lsb)
     paths = _PATHS if any(part.markov[0] > 0.0 for part in log.parts) else 1
     for seed in range(paths):
-        own, _ = still.own(time_s.size, interval, seed, 1.0)
+        own = log.own(time_s.size, interval, seed, 0.0)
         error = mean_rounding(readings.along_axes + own, log.lsb, sigma) / math.sqrt(paths)
-        error = turned(error, *readings.turn) if log.body_frame else error
+        error = turned(error, *readings.turn.T) if log.body_frame else error
         errors.append(np.broadcast_to(error, (time_s.size, 2)))
     return time_s, errors
 
@@ -204,12 +262,15 @@ class _Log:
         """Velocity of the water over the ground, E and N, m/s; shape (m, 2) or (1, 2)."""
         return sum((part.water(time_s) for part in self.parts if part.water), np.zeros((1, 2)))
 
-    def own(self, count: int, interval_s: float, seed: int, samples: float) -> tuple[np.ndarray, float]:
-        """Errors in the log's axes, shape (m, 2) or (1, 2), and the rounding that is left."""
-        noise = math.hypot(*(part.white for part in self.parts))
-        lsb = self.lsb
+    def noise(self, samples: float) -> tuple[float, float]:
+        """Standard deviation of the noise of a reading of several samples, and the rounding that is left."""
+        noise, lsb = math.hypot(*(part.white for part in self.parts)), self.lsb
         if samples > 1.0 and noise >= DITHERED * lsb:
             noise, lsb = math.hypot(noise, lsb / math.sqrt(12.0)), 0.0
+        return noise / math.sqrt(samples), lsb
+
+    def own(self, count: int, interval_s: float, seed: int, noise: float) -> np.ndarray:
+        """Errors in the log's axes, shape (m, 2) or (1, 2), with noise of a standard deviation."""
         own = sum((part.constant for part in self.parts), np.zeros((1, 2)))
         for part in self.parts:
             sigma, tau_s = part.markov
@@ -218,43 +279,43 @@ class _Log:
                 own = own + sigma * gauss_markov(unit, math.exp(-interval_s / tau_s))
         if noise > 0.0:
             unit = unit_noise(seed, "log.noise", count, 2)
-            own = own + np.multiply(unit, noise / math.sqrt(samples), dtype=float)
-        return own, lsb
+            white = np.multiply(unit, noise, dtype=float)
+            own = np.add(white, own, out=white)
+        return own
 
-    def linear_errors(self, truth: Truth, time_s: np.ndarray, own: np.ndarray) -> np.ndarray:
-        """Errors without delay and rounding: the velocity itself cancels, and is often not needed."""
-        error = self.by_motion(truth, time_s) - (1.0 + self.scale) * self.water(time_s)
-        if self.scale == 0.0 and not self.body_frame:
-            return error + own
-        velocity, heading = _true_state(truth, time_s)
-        return error + self.scale * velocity + (to_navigation(own, heading) if self.body_frame else own)
+    def readings(self, truth: Truth, time_s: np.ndarray, lsb: float) -> "_Readings":
+        """Readings to which any seed adds the log's own errors.
 
-    def rounded_errors(self, readings: "_Readings", own: np.ndarray, lsb: float) -> np.ndarray:
-        """Errors of readings that are rounded in the log's axes; a body log's are turned by the heading."""
-        read = _rounded(readings.along_axes + own, lsb)
-        return (turned(read, *readings.turn) if self.body_frame else read) - readings.velocity
-
-    def readings(self, truth: Truth, time_s: np.ndarray) -> "_Readings":
-        """Readings of an earlier velocity, smoothed, to which any seed adds the log's own errors."""
+        Without delay, smoothing and rounding the velocity itself cancels, and is often not needed.
+        """
+        turn = np.empty((0, 2))
+        if self.body_frame:
+            heading = _true_state(truth, time_s)[1]
+            turn = np.column_stack([np.sin(heading), np.cos(heading)])
+        if self.delay_s == self.smoothing_s == lsb == 0.0:
+            rest = self.by_motion(truth, time_s) - (1.0 + self.scale) * self.water(time_s)
+            if self.scale != 0.0:
+                rest = rest + self.scale * _true_state(truth, time_s)[0]
+            return _Readings(np.zeros((1, 2)), turn, np.ascontiguousarray(rest))
         measured_at = np.maximum(time_s - self.delay_s, 0.0)
-        velocity, heading = _true_state(truth, time_s)
         then_velocity, then_heading = _true_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_motion(truth, measured_at)
         along_axes = to_ship(seen, then_heading) if self.body_frame else seen
-        turn = np.sin(heading), np.cos(heading)
-        return _Readings(_smoothed(along_axes, time_s, self.smoothing_s), turn, velocity)
+        along_axes = np.ascontiguousarray(_smoothed(along_axes, time_s, self.smoothing_s))
+        return _Readings(along_axes, turn, np.ascontiguousarray(-_true_state(truth, time_s)[0]))
 
 
 class _Readings(NamedTuple):
-    """Readings without the log's own errors, in its axes, and the present velocity, m/s.
+    """What the errors of a reading are made of: turned by ``turn``, with the log's own errors, plus the rest.
 
-    ``turn``: sine and cosine of the present heading.
+    ``along_axes``: the reading in the log's axes, m/s, as far as it does not cancel. ``turn``: sine and
+    cosine of the present heading, one row a time, none of a log in E and N. ``rest``: E and N, m/s.
     """
 
     along_axes: np.ndarray
-    turn: tuple[np.ndarray, np.ndarray]
-    velocity: np.ndarray
+    turn: np.ndarray
+    rest: np.ndarray
 
 
 def _true_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -276,7 +337,3 @@ def _smoothed(reading: np.ndarray, time_s: np.ndarray, tau_s: float) -> np.ndarr
     new = 1.0 + math.expm1(-ratio) / ratio
     earlier = 1.0 - decay - new
     return lfilter([new, earlier], [1.0, -decay], reading, axis=0, zi=(1.0 - new) * reading[:1])[0]
-
-
-def _rounded(reading: np.ndarray, lsb: float) -> np.ndarray:
-    return reading if lsb < _FINEST_LSB else np.round(reading / lsb) * lsb

@@ -48,10 +48,11 @@ def requirement_spans(scenario: Scenario, step_s: float) -> np.ndarray:
 
 
 def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
-    """Add the log events that only this method sees."""
+    """Add the log events that only this method sees; to logs side by side alike."""
     if not method.event:
         return reference
     extra = event_velocity(method.event, reference.time_s)
+    extra = extra[:, :, None] if reference.error.ndim > 2 else extra
     if reference.moored.size:
         extra[reference.moored] = 0.0
     return replace(reference, error=reference.error + extra)

@@ -16,7 +16,14 @@ from navcore.foundation.earth import Earth
 from navcore.foundation.records import stacked
 from navcore.law.law import LAW_PARAMETERS, LAW_STATE, Law
 from navcore.mechanization.recorder import given_out, take_lengths
-from navcore.mechanization.strapdown.kernel import arms, azimuth_epoch, errors_at, law_epoch, navigates
+from navcore.mechanization.strapdown.kernel import (
+    arms,
+    azimuth_epoch,
+    errors_at,
+    law_epoch,
+    navigates,
+    true_attitude,
+)
 from navcore.mechanization.strapdown.log import VelocityReference
 from navcore.mechanization.strapdown.records import CONSTANTS, LARGEST_LATITUDE, LAST_CALL, constants_of
 from navcore.mechanization.strapdown.run import Settings, Start, constants
@@ -89,8 +96,10 @@ def _run_samples(first, last, increments, con, x):
     """Integrate samples first..last of a chunk for all runs of a block with what their laws hold."""
     step, height = constants_of(con), con.height0
     for i in range(first, last):
+        # sliced: of a place in the whole array numba would ask, lane by lane, whether it is negative
+        rows = increments[6 * _W * i : 6 * _W * (i + 1)]
         for j in range(_W):
-            now = _increment_of(increments, 6 * i, j)
+            now = _increment_of(rows, 0, j)
             held = Held(
                 x[_C_E * _W + j], x[_C_N * _W + j], x[_C_U * _W + j],
                 x[_A_E * _W + j], x[_A_N * _W + j], 0.0, 0.0,
@@ -127,9 +136,8 @@ class _Pace(NamedTuple):
 
 
 @inlined
-def _record(row, run, errors, truth, i, runs):
-    """Take the errors of one run at record ``row``, row i of the truth, into its spans."""
-    m, n_cos = arms(runs.con[run], truth, i)
+def _record(row, run, errors, m, n_cos, runs):
+    """Take the errors of one run at record ``row`` into its spans; m, n_cos of `arms`."""
     north, east = m * errors.d_lat, n_cos * errors.d_lon
     position = math.sqrt(north * north + east * east)
     runs.position_m[run] = position
@@ -137,8 +145,11 @@ def _record(row, run, errors, truth, i, runs):
 
 
 @kernel
-def _epoch(k, run, row, x, runs):
-    """Earth terms, law and record of one run, lane of the same number, at sample k."""
+def _epoch(k, run, row, true_q, m, n_cos, x, runs):
+    """Earth terms, law and record of one run, lane of the same number, at sample k.
+
+    What the truth says of record ``row`` is the same for all runs: its quaternion, and m, n_cos of `arms`.
+    """
     con, truth, j = runs.con[run], runs.truth, run
     d_lat, v_e, v_n = x[_D_LAT * _W + j], x[_V_E * _W + j], x[_V_N * _W + j]
     q = (x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j])
@@ -159,11 +170,11 @@ def _epoch(k, run, row, x, runs):
     x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j] = held
     if row >= 0:
         i = row if truth.shape[0] > 1 else 0
-        errors = errors_at(con, d_lat, x[_D_LON * _W + j], v_e, v_n, q, truth, i)
+        errors = errors_at(con, d_lat, x[_D_LON * _W + j], v_e, v_n, q, truth, i, true_q)
         if not navigates(errors, con.height0):
             runs.diverged[run] = True
         if not runs.diverged[run]:
-            _record(row, run, given_out(errors, law.s), truth, i, runs)
+            _record(row, run, given_out(errors, law.s), m, n_cos, runs)
 
 
 @kernel
@@ -173,8 +184,13 @@ def _advance_block(increments, samples, first, pace, x, runs):
     while True:
         if k % pace.law_every == 0 and (k < end or k == pace.final):
             row = k // pace.record_every if k % pace.record_every == 0 else -1
+            true_q, m, n_cos = (1.0, 0.0, 0.0, 0.0), 0.0, 0.0
+            if row >= 0:
+                i = row if runs.truth.shape[0] > 1 else 0
+                true_q = true_attitude(runs.truth, i)
+                m, n_cos = arms(runs.con[0], runs.truth, i)
             for run in range(runs.con.shape[0]):
-                _epoch(k, run, row, x, runs)
+                _epoch(k, run, row, true_q, m, n_cos, x, runs)
         if k == end:
             return
         n = min(pace.law_every - k % pace.law_every, end - k)

@@ -79,10 +79,15 @@ def azimuth_epoch(law, held, terms, v_e):
 
 
 @inlined
-def errors_at(con, d_lat, d_lon, v_e, v_n, q, truth, i):
-    """Errors against row i of the truth; d_lat, d_lon from the start (rad), q the attitude's quaternion."""
-    t0, t1, t2, t3 = quaternion_of(truth[i, PITCH], truth[i, ROLL], truth[i, HEADING])
-    phi_e, phi_n, phi_u = misalignment(q[0], q[1], q[2], q[3], t0, t1, t2, t3)
+def true_attitude(truth, i):
+    """Quaternion of row i of the truth."""
+    return quaternion_of(truth[i, PITCH], truth[i, ROLL], truth[i, HEADING])
+
+
+@inlined
+def errors_at(con, d_lat, d_lon, v_e, v_n, q, truth, i, true_q):
+    """Errors against row i of the truth; d_lat, d_lon from the start (rad), q and true_q quaternions."""
+    phi_e, phi_n, phi_u = misalignment(q[0], q[1], q[2], q[3], true_q[0], true_q[1], true_q[2], true_q[3])
     return Errors(
         v_e - truth[i, VE], v_n - truth[i, VN], con.lat0 + d_lat - truth[i, LAT],
         con.lon0 - truth[i, LON] + d_lon, phi_e, phi_n, phi_u,
@@ -111,7 +116,7 @@ def _record_state(k, con, x, truth, law, navigation, recorder):
     i = k if truth.shape[0] > 1 else 0
     lat, v_u, height = con.lat0 + x.d_lat, x.v[2], x.height
     q = (x.q[0], x.q[1], x.q[2], x.q[3])
-    errors = errors_at(con, x.d_lat, x.d_lon, x.v[E], x.v[N], q, truth, i)
+    errors = errors_at(con, x.d_lat, x.d_lon, x.v[E], x.v[N], q, truth, i, true_attitude(truth, i))
     if not navigates(errors, height):
         return False
     s, j = law.s, recorder.cursor.row

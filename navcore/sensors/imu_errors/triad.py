@@ -86,7 +86,8 @@ class Triad:
         error = self.slow(clock)
         if self.white > 0.0:
             amplitude = self.white / math.sqrt(clock.step_s)
-            error = error + np.multiply(clock.white_noise(self.sensor), amplitude, dtype=float)
+            noise = np.multiply(clock.white_noise(self.sensor), amplitude, dtype=float)
+            error = np.add(noise, error, out=noise)
         if self.lsb.any():
             error = np.array(np.broadcast_to(error, (clock.count, 3)), order="C")
             add_quantisation(signal, self.coupling, self.lsb, clock.step_s, error)
