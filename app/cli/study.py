@@ -88,6 +88,10 @@ class StudyCommand:
     def _engine(self, plan: Plan, workers: int) -> Iterator[tuple[Engine | None, int]]:
         """Give what carries the runs out (None: this machine), and how many blocks at a time."""
         if self.scheduler is None:
+            from schuler_bench.memory import bound_arenas
+
+            # a thread's own arena gives its memory back after each block, to ask for it again page by page
+            bound_arenas()
             yield None, workers
             return
         from schuler_bench.jobs.study_cluster import study_cluster
