@@ -16,7 +16,9 @@ from navcore.study.results import Folder
 from schuler_bench.cli import main
 from tests.studies import LATITUDE, NOISE, SHIP, stored, write
 
-KILLS, RUNS = 20, 2 * 8 * 60
+KILLS, SEEDS = 20, 120
+RUNS = 2 * 8 * SEEDS
+"""More work than one and twenty commands do that keep a part each, on a machine twice as fast."""
 
 
 def command(study: str, folder: Path, workers: str = "1") -> subprocess.Popen[bytes]:
@@ -45,7 +47,7 @@ def further(process: subprocess.Popen[bytes], folder: Path, within_s: float) -> 
 @pytest.mark.timeout(400)
 def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
     scenario = {**SHIP, "run": {"duration_h": 24.0, "seed": 7}}
-    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": 60}
+    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": SEEDS}
     study = write(tmp_path / "study.toml", scenario=scenario, **blocks)
     folder = tmp_path / "killed"
     chance = random.Random(26)
