@@ -198,13 +198,15 @@ def _linear(
     if report(0.0):
         return []
     each, columns = scenarios[0].method, []
-    laws = len(scenarios) > 1 and any(method.kind.carrying == "law" for method in each)
-    env = environment_side_by_side(scenarios, WIDTH) if laws else None
+    side_by_side = [len(scenarios) > 1 and method.kind.carrying == "law" for method in each]
+    env = environment_side_by_side(scenarios, WIDTH) if any(side_by_side) else None
+    inputs = [] if all(side_by_side) else [_inputs(one) for one in scenarios]
     for k, method in enumerate(each):
-        if env and method.kind.carrying == "law":
+        if env and side_by_side[k]:
             columns.append(_side_by_side(scenarios, method, env))
         else:
-            columns.append([_outcome(told or one, method, *_inputs(one), gains.get(k)) for one in scenarios])
+            pairs = zip(scenarios, inputs, strict=True)
+            columns.append([_outcome(told or one, method, *given, gains.get(k)) for one, given in pairs])
         if report(len(scenarios) / len(each)):
             return []
     return [*zip(*columns, strict=True)]

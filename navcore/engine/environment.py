@@ -101,7 +101,6 @@ def environment(scenario: Scenario) -> Environment:
     truth, truth_key = truth_of(scenario, steps, h), _truth_key(scenario, steps, h)
     channel, seed = scenario.run.fidelity == "channel", scenario.run.seed
     log_key = (scenario.reference, recorded_state(scenario.reference))
-
     return Environment(
         steps=steps,
         truth_half=truth,
