@@ -287,9 +287,12 @@ def _vector(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSp
 
 
 def full_label(name: str, info: FieldInfo, prefix: str = "", part: str = "") -> str:
-    """Label of a control: a prefix, the field's name, the element's name and the unit."""
-    extra = extra_of(info)
-    words = [prefix, plain_label(name, info), part]
+    """Label of a control: a prefix, the field's name, the element's name and the unit.
+
+    A name that begins with the prefix or its singular stands without it: "wave height" in a block "waves".
+    """
+    extra, label = extra_of(info), plain_label(name, info)
+    words = [prefix if label.split()[0].rstrip("s") != prefix.rstrip("s") else "", label, part]
     sign = unit_sign(extra.get("unit", ""))
     unit = Text("({sign})", sign=sign) if sign else ""
     return Text.joined(" ", (word for word in (*words, unit) if word))

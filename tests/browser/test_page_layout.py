@@ -4,6 +4,7 @@ import re
 from typing import Any, Literal
 
 import pytest
+from playwright.sync_api import Locator
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from navcore.scenario.file import load as load_preset
@@ -148,6 +149,25 @@ def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:
         assert tab == "Requirements" or rows, tab
         for apart, cut in rows:
             assert apart < 8 and cut <= 0, (tab, rows)
+
+
+def middle(located: Locator) -> float:
+    box = located.bounding_box()
+    return box["y"] + box["height"] / 2
+
+
+def test_tools_are_level_with_the_tabs_and_only_the_main_button_is_filled(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", "Poles", "Spectrum", "Files")
+    page = bench.page
+    for tab, tool in (("Poles", bench.button("Place")), ("Spectrum", bench.box("spectrum of"))):
+        wait_until_it_fits(bench, tab)
+        assert abs(middle(page.get_by_role("tab", name=tab, exact=True)) - middle(tool)) < 2, tab
+    bench.tab("Metrics")
+    wait_until_it_fits(bench, "Metrics", scrolls=True)
+    assert bench.box("errors over").bounding_box()["width"] < 420
+    fill = "node => getComputedStyle(node).backgroundColor"
+    main, other = (bench.button(name).evaluate(fill) for name in ("Upload a file", "Download scenario.toml"))
+    assert other == "rgb(255, 255, 255)" and main != other
 
 
 def uncovered(bench: Bench) -> int:

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
+from navcore.motion.seagoing import Waves
 from navcore.networks import NETWORKS
 from navcore.scenario.blocks import RunSettings, SiteSettings
 from navcore.scenario.initial_error import InitialError
@@ -183,6 +184,17 @@ def test_units_are_understood(text: str, unit: str, value: float) -> None:
 def test_what_does_not_fit_is_refused_in_words(text: str, unit: str, told: str) -> None:
     with pytest.raises(ValueError, match=told):
         read_typed(text, unit)
+
+
+def test_a_name_that_begins_with_its_block_stands_without_it() -> None:
+    labels = [field.label for field in form.fields(Waves, ("motion", "waves"), prefix="waves")]
+    assert labels[:5] == [
+        "waves spectrum",
+        "wave height (m)",
+        "waves peak period (s)",
+        "waves from (°)",
+        "waves spread (°)",
+    ]
 
 
 def test_the_unit_stands_in_the_label() -> None:

@@ -32,7 +32,7 @@
   }, true);
 
   // The tools above a plot stand beside the tabs of their panel, where both have room in one row (page.css).
-  const TOOL = ':is([data-sb-kind="select"], [data-sb-kind="number"], [data-sb-kind="other"], [data-sb-kind="mark"])';
+  const TOOL = ':is([data-sb-kind="select"], [data-sb-kind="number"], [data-sb-kind="other"], [data-sb-kind="mark"], :has(> .mantine-Button-root))';
   function raise(viewport) {
     const strip = viewport.closest("[data-dock-group]")?.querySelector(":scope > [data-dock-strip]");
     const more = strip?.parentElement.querySelector(":scope > .sb-more-tabs"); // groups.js

@@ -17,6 +17,7 @@ from schuler_bench.plots.units import duration
 from schuler_bench.session.shown import Shown, window_of
 from schuler_bench.shell import notices
 from schuler_bench.shell.control import Widget
+from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.view import PictureView, Tab, if_user
 from schuler_bench.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 
@@ -61,7 +62,7 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0) -> str:
 def _box(lines: str, state: str, short: str = "") -> str:
     """HTML of the lines below a heading; ``short`` is shown while they are folded."""
     status = Text('<span role="status" class="sb-muted">{state:html}</span>', state=state) if state else ""
-    which = f'id="sb-why" data-fits="{int(not state)}"'
+    which = f'id="sb-why" class="sb-wide" data-fits="{int(not state)}"'
     if not lines:
         return Text("<div {which}><b>Why</b> {status}</div>", which=which, status=status)
     return Text(
@@ -182,6 +183,7 @@ class MetricsView(PictureView[tuple[str, str]]):
     def build(self, tab: Tab) -> None:
         """Make the places of the texts."""
         with tab:
+            self.frame.gui.add_html(TOOLS)
             self._over: Any = self.frame.gui.add_dropdown(
                 OVER,
                 tuple(_WINDOWS),
@@ -240,7 +242,9 @@ class MetricsView(PictureView[tuple[str, str]]):
         table, warnings = picture
         narrow = "" if self.frame.layout().wide else " sb-narrow"
         self._table.content = Text(
-            '<div class="sb-table{narrow}" style="padding:4px 10px">{table}</div>', narrow=narrow, table=table
+            '<div class="sb-table sb-wide{narrow}" style="padding:4px 10px">{table}</div>',
+            narrow=narrow,
+            table=table,
         )
         self._warnings.content = warnings
         if self.session.run is not None:
@@ -289,7 +293,9 @@ def warnings_html(run: Run, verified: Verified | None = None) -> str:
             )
         )
     return Text(
-        '<div style="padding-top:3px;color:{ink}">{notes}</div>', ink=style.INK, notes=Text.joined("", notes)
+        '<div class="sb-wide" style="padding-top:3px;color:{ink}">{notes}</div>',
+        ink=style.INK,
+        notes=Text.joined("", notes),
     )
 
 

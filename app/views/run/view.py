@@ -86,9 +86,7 @@ def _inner_blocks(scenario: Scenario) -> list[FieldSpec]:
         for block, fields in blocks_of(type(scenario.motion)).items()
         for name, many in fields
         if not many
-        for spec in form.fields(
-            block, ("motion", name), prefix=Text("{name} {kind}", name=name, kind=scenario.motion.kind)
-        )
+        for spec in form.fields(block, ("motion", name), prefix=name)
     ]
 
 

@@ -6,6 +6,7 @@ from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.session.shown import Shown
+from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import if_user
 from schuler_bench.views.errors.figure import TITLES
@@ -26,6 +27,7 @@ class SpectrumView(PlotlyView):
 
     def build_tools(self) -> None:
         """Make the chooser."""
+        self.frame.gui.add_html(TOOLS)
         self._chooser: Any = self.frame.gui.add_dropdown(
             SPECTRUM_OF, tuple(_KEYS), initial_value=TITLES[self.session.display.spectrum],
             hint=Text("Amplitude over period: a sine shows as a peak of its amplitude."),
