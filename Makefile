@@ -19,7 +19,8 @@ KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser (PORT=...: there)'
-	@echo 'make test     install what is needed, then lint, check types and run every test'
+	@echo 'make test     install what is needed, then lint, check types and run the tests of all parts'
+	@echo '              SLOW=yes: with the slow ones, twice as long, as continuous integration does'
 	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
@@ -53,8 +54,9 @@ setup: $(STAMPS)/kernels
 run: setup
 	@$(BIN)/schuler serve --open $(if $(findstring command,$(origin PORT)),--port $(PORT))
 
+# SLOW=yes: the tests that are marked slow too, as before a merge.
 test: setup $(STAMPS)/test
-	@$(BIN)/python -m tools.stages
+	@$(if $(SLOW),,SCHULER_QUICK=yes) $(BIN)/python -m tools.stages
 
 nightly: setup $(STAMPS)/test
 	@SCHULER_NIGHTLY=yes $(BIN)/python -m tools.stages

@@ -42,11 +42,12 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave the sweeps to `make nightly`."""
-    if os.environ.get("SCHULER_NIGHTLY"):
-        return
-    config.hook.pytest_deselected(items=[item for item in items if item.get_closest_marker("nightly")])
-    items[:] = [item for item in items if not item.get_closest_marker("nightly")]
+    """Leave the sweeps to `make nightly`, and where asked for what is slow to `make test SLOW=yes`."""
+    later = {"nightly"} if not os.environ.get("SCHULER_NIGHTLY") else set[str]()
+    later |= {"slow"} if os.environ.get("SCHULER_QUICK") else set()
+    left_out = [item for item in items if any(map(item.get_closest_marker, later))]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture(scope="session")

@@ -2,21 +2,23 @@
 # Runs both commands of the README as a machine does that has never seen them: a fresh clone of the last commit in an
 # empty folder, an empty home, no caches, no settings of ours, and one font.
 #
-#   tools/bare.sh [run|test] [--font FAMILY] [--keep]
+#   tools/bare.sh [run|test] [--slow] [--font FAMILY] [--keep]
 #
 # run, test   only `make run`, or only `make test`; by default one after the other
+# --slow      `make test SLOW=yes`, as continuous integration does
 # --font      the one font: "DejaVu Sans" (wide, the default) or "Liberation Sans"
 # --keep      leave the folder where it is
 set -u
 
 root=$(cd "$(dirname "$0")/.." && pwd -P)
-commands='run test' font='DejaVu Sans' keep=no
+commands='run test' font='DejaVu Sans' keep=no slow=
 while [ $# -gt 0 ]; do
   case $1 in
     run | test) commands=$1 ;;
+    --slow) slow=yes ;;
     --font) font=${2:?--font needs a family}; shift ;;
     --keep) keep=yes ;;
-    *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,10s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
   shift
 done
@@ -120,9 +122,9 @@ make_run() {
 
 make_test() {
   begun=$(date +%s)
-  make --no-print-directory test < /dev/null
+  make --no-print-directory test SLOW="$slow" < /dev/null
   code=$?
-  echo "== make test: exit code $code after $(seconds "$begun") s"
+  echo "== make test${slow:+ SLOW=$slow}: exit code $code after $(seconds "$begun") s"
   return $code
 }
 

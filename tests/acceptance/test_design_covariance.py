@@ -8,6 +8,7 @@ from tools.covariance import MOTIONS, ratios
 SEEDS = 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_covariance_holds_against_seeds(motion: str) -> None:
     """Eight methods, five times, seven quantities: no bias, and no ratio beyond what 200 seeds leave."""

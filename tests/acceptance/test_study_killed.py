@@ -44,6 +44,7 @@ def further(process: subprocess.Popen[bytes], folder: Path, within_s: float) -> 
     return True
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
     scenario = {**SHIP, "run": {"duration_h": 24.0, "seed": 7}}

@@ -227,6 +227,7 @@ CHANGES = {
 """What differs first, and by which change in which file."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_worker_with_another_program_is_passed_over_and_named(
     there: Cluster,

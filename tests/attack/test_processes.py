@@ -241,6 +241,7 @@ def test_page_and_websocket_come_through_the_door(door: Door) -> None:
     assert statuses(door.port, own, Host="evil.example") == (421, 421)
 
 
+@pytest.mark.slow
 def test_sessions_of_a_crashed_worker_reopen(door: Door) -> None:
     own, before, zeta = door.session(), door.workers(), label_of("network.zeta")
     with Visitor(door.port, own) as page:

@@ -61,6 +61,7 @@ def test_a_worker_that_dies_leaves_the_rows_of_a_local_run(tmp_path: Path) -> No
         machines.end()
 
 
+@pytest.mark.slow
 def test_a_lost_scheduler_is_told_and_the_study_goes_on_here(tmp_path: Path) -> None:
     study, out = _study(tmp_path, 200), tmp_path / "out"
     machines = Machines(tmp_path)
@@ -80,6 +81,7 @@ def test_a_lost_scheduler_is_told_and_the_study_goes_on_here(tmp_path: Path) -> 
     assert len(numbers) == len(set(numbers)) == 600 * 3
 
 
+@pytest.mark.slow
 def test_no_scheduler_and_no_address_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     began = time.monotonic()
     address = f"tcp://127.0.0.1:{free_port()}"

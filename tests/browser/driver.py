@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -33,8 +33,17 @@ _LABEL = re.compile(r"(.+?)( [≤≥])? \(([^()]*)\)")
 
 SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
 """Windows in which the page is looked at; most tests run in the first."""
-SWEEP = [SIZES[0], pytest.param(SIZES[1], marks=pytest.mark.nightly), SIZES[2]]
-"""The same for a test that runs in all of them: the one in the middle at night."""
+SWEEP = [
+    pytest.param(SIZES[0], marks=pytest.mark.slow),
+    pytest.param(SIZES[1], marks=pytest.mark.nightly),
+    SIZES[2],
+]
+"""The same for a test that runs in all of them: always in the smallest, in the one in the middle at night."""
+
+
+def first_of(cases: Iterable[Any], marks: pytest.MarkDecorator = pytest.mark.slow) -> list[Any]:
+    """Cases of a test, of which all but the first have a mark."""
+    return [pytest.param(case, marks=marks) if place else case for place, case in enumerate(cases)]
 
 
 def _has_callbacks(view: OpenPage) -> bool:

@@ -12,7 +12,7 @@ from schuler_bench.plots.style import INK, method_color
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.views.appearance.view import COLORS
 from tests import dark_page as theme
-from tests.browser.driver import SWEEP, Bench
+from tests.browser.driver import SWEEP, Bench, first_of
 from tests.browser.fields import label_of
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
@@ -37,14 +37,16 @@ def violations(bench: Bench, axe: str) -> list[str]:
 
 @pytest.mark.parametrize(
     "tabs",
-    [
-        ("Method", "Frequency", "Errors"),
-        ("Sensors", "Poles", "Metrics"),
-        ("Learn", "Step", "Scenario"),
-        ("View", "Misprints", "Requirements"),
-        ("Log", "Compare"),
-        ("Run", "Spectrum"),
-    ],
+    first_of(
+        [
+            ("Method", "Frequency", "Errors"),
+            ("Sensors", "Poles", "Metrics"),
+            ("Learn", "Step", "Scenario"),
+            ("View", "Misprints", "Requirements"),
+            ("Log", "Compare"),
+            ("Run", "Spectrum"),
+        ]
+    ),
     ids=lambda tabs: tabs[0],
 )
 def test_axe_finds_nothing_wrong(moving: Bench, axe: str, tabs: tuple[str, ...]) -> None:

@@ -48,6 +48,7 @@ def test_gains_are_linked_both_ways_with_sigma_and_xi(fresh: Bench, session: Ses
     assert edits.value_at(session.scenario, ("method", 2, "network", "xi")) == 0.5
 
 
+@pytest.mark.slow
 def test_a_wrong_value_is_restored_and_the_reason_said(fresh: Bench, session: Session) -> None:
     number, before = fresh.run, session.scenario
     for text in ("7", "-5"):
@@ -308,6 +309,7 @@ def test_a_preset_opens(bench: Bench, name: str) -> None:
     bench.page.wait_for_function(table, arg=names)
 
 
+@pytest.mark.slow
 def test_a_slider_plays_to_its_end_and_stops_at_a_key(moving: Bench) -> None:
     page = moving.page
     row = page.locator('[data-sb-kind="slider"]', has=moving.slider("network.zeta"))

@@ -45,6 +45,7 @@ def test_without_limits_the_budget_is_shown_and_the_way_to_them(designing: Bench
     page.get_by_role("tab", name="Requirements", exact=True, selected=True).wait_for()
 
 
+@pytest.mark.slow
 def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
     page, session, accept = moving.page, moving.session, moving.button(ACCEPT)
     before = session.scenario
@@ -108,6 +109,7 @@ def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -
     short.button(FIND_DESIGNS).wait_for()
 
 
+@pytest.mark.slow
 def test_a_setting_is_tuned_over_the_points_of_the_tab_study(short: Bench) -> None:
     session, designer = short.session, short.session.searches.designer
     before = session.scenario

@@ -15,7 +15,7 @@ from tests.browser import test_page_layout as layout
 from tests.browser import test_page_scene as scene
 from tests.browser import test_page_touch as touch
 from tests.browser.conftest import Served
-from tests.browser.driver import SIZES, Bench
+from tests.browser.driver import SIZES, Bench, first_of
 from tests.browser.windows import test_comparing as comparing
 from tests.browser.windows import test_opening as opening
 from tests.browser.windows import test_sharing as sharing
@@ -92,11 +92,11 @@ def test_a_font_that_does_not_come_holds_nothing_up(wide: Browser, dashboard: Se
 
 
 def in_windows(*windows: tuple[tuple[int, int], float]) -> pytest.MarkDecorator:
-    """Run a test in windows with their zoom."""
-    return pytest.mark.parametrize("lettered", windows, ids=str, indirect=True)
+    """Run a test in windows with their zoom; what is slow, in all but the first."""
+    return pytest.mark.parametrize("lettered", first_of(windows), ids=str, indirect=True)
 
 
-@in_windows(*product((SIZES[0], SIZES[2]), (1.0, 1.25)))
+@in_windows(*product((SIZES[2], SIZES[0]), (1.0, 1.25)))
 def test_every_tab_has_room_for_its_texts(lettered: Bench) -> None:
     layout.test_every_tab_fits_its_panel(lettered)
     opening.test_every_tab_says_what_to_look_for(lettered)
@@ -104,6 +104,7 @@ def test_every_tab_has_room_for_its_texts(lettered: Bench) -> None:
         scene.test_a_narrow_readout_lies_clear_of_the_buttons(lettered)
 
 
+@pytest.mark.slow
 @in_windows((SIZES[2], 1.0))
 def test_rows_and_tables_have_room_for_their_texts(lettered: Bench) -> None:
     comparing.test_the_table_of_metrics_is_whole_rounded_aligned_and_marks_the_best(lettered)

@@ -9,7 +9,7 @@ from navcore.engine.measures import measure
 from schuler_bench.shell.layout import BAR_PX, RAIL_PX, STRIP_PX
 from schuler_bench.shell.page import Page as OpenPage
 from tests.browser.conftest import Another
-from tests.browser.driver import SIZES, Bench
+from tests.browser.driver import SIZES, Bench, first_of
 from tests.limits import require
 from tools.paint.share import FRAMES, share
 
@@ -39,7 +39,7 @@ def test_plots_fill_about_half_of_the_window(moving: Bench, size: tuple[int, int
             assert across / parts >= 520.0 and down / parts >= (170.0 if parts > 1.0 else 150.0), frames
 
 
-@pytest.mark.parametrize("size", [*SIZES, (1180, 820)], ids=str)
+@pytest.mark.parametrize("size", first_of([*SIZES, (1180, 820)]), ids=str)
 def test_the_controls_begin_right_below_bar_and_strip(moving: Bench, size: tuple[int, int]) -> None:
     moving.resize(size)
     page = moving.page

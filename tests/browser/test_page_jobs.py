@@ -242,6 +242,7 @@ def test_one_click_sweeps_four_quantities_and_a_change_makes_them_old(short: Ben
     sweeper.forget()
 
 
+@pytest.mark.slow
 def test_a_study_is_run_stopped_gone_on_with_and_its_worst_run_opened(short: Bench, tmp_path: Path) -> None:
     page, session = short.page, short.session
     studier, before = session.searches.studier, session.scenario

@@ -113,6 +113,7 @@ def test_dialogs_and_the_palette(reader: Reader) -> None:
     reader.judge()
 
 
+@pytest.mark.slow
 def test_what_is_refused_and_what_is_told(reader: Reader) -> None:
     page, bench = reader.page, reader.bench
     bench.box("network.zeta").fill("-7")
@@ -150,6 +151,7 @@ def test_what_is_refused_and_what_is_told(reader: Reader) -> None:
     reader.judge()
 
 
+@pytest.mark.slow
 def test_a_verification_and_a_run_that_diverges(reader: Reader) -> None:
     bench = reader.bench
     bench.put(load("sikuliaq-like", ["run.duration_h=1.0"]), "Errors", "Metrics", selected=2)
@@ -187,6 +189,7 @@ def test_a_lesson(reader: Reader, number: int) -> None:
     reader.judge()
 
 
+@pytest.mark.slow
 def test_presenting_and_presentation_size(reader: Reader) -> None:
     bench, page = reader.bench, reader.page
     watcher = Bench(page.context.new_page(), bench.url, bench.sessions)

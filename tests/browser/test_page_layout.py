@@ -186,6 +186,7 @@ def test_no_question_mark_covers_a_label(sized: Bench) -> None:
     assert uncovered(sized) > 100
 
 
+@pytest.mark.slow
 def test_no_question_mark_covers_a_label_in_chinese(chinese: Bench) -> None:
     chinese.size = SIZES[2]
     chinese.clean()
@@ -234,6 +235,7 @@ def test_a_misprint_is_shown_as_printed_corrected_and_both(moving: Bench) -> Non
     assert moving.run == number
 
 
+@pytest.mark.slow
 def test_every_misprint_is_readable(moving: Bench) -> None:
     moving.tab("Misprints")
     for id in MISPRINTS:

@@ -12,7 +12,7 @@ from schuler_bench.views.learn.own import use_lessons
 from schuler_bench.views.learn.view import spec_at
 from tests.answers import names_in, right_answer
 from tests.browser.conftest import Another
-from tests.browser.driver import Bench
+from tests.browser.driver import Bench, first_of
 
 SECTION = ".sb-lesson:not(.sb-question):not(.sb-below)"
 # Numbers of the text as they are shown, by their name.
@@ -86,7 +86,7 @@ def work_through(bench: Bench, lesson: Lesson, index: int) -> None:
     assert "press Show me" not in told.inner_text()
 
 
-@pytest.mark.parametrize("number", range(len(lessons())), ids=[lesson.id for lesson in lessons()])
+@pytest.mark.parametrize("number", first_of(range(len(lessons()))), ids=[lesson.id for lesson in lessons()])
 def test_a_lesson_is_worked_through(learner: Bench, number: int) -> None:
     lesson = lessons()[number]
     press(learner, f"open {number}")
@@ -124,6 +124,7 @@ def test_a_lesson_is_worked_by_keyboard_alone(learner: Bench) -> None:
     learner.page.wait_for_function("() => document.activeElement?.dataset?.command === 'lesson next'")
 
 
+@pytest.mark.slow
 def test_a_teachers_lesson_is_followed_by_two_pages_that_watch(
     fresh: Bench, another: Another, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

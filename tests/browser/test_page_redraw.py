@@ -120,6 +120,7 @@ def test_a_double_click_goes_back_to_the_ranges_of_the_figure_that_is_shown(movi
     assert axes_after_double_click(moving, "look.mapAxes", middle) == home
 
 
+@pytest.mark.slow
 def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(moving: Bench) -> None:
     session, thumb, start = moving.session, moving.slider(ZETA), moving.value(ZETA)
     session.pins.add(session.run, "sikuliaq-like")

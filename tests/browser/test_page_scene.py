@@ -81,6 +81,7 @@ def test_the_computed_ship_is_that_of_the_selected_method(moving: Bench) -> None
     assert moving.run == number
 
 
+@pytest.mark.slow
 def test_the_last_frame_shows_the_last_change(still: Bench) -> None:
     page = still.page
     seek(still, 20000)

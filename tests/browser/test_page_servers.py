@@ -102,6 +102,7 @@ SCRIPT = Path(schuler_bench.shell.__file__).parent / "static" / "place.js"
 QUIET_MS = 5500
 
 
+@pytest.mark.slow
 def test_an_idle_page_comes_back_by_itself_and_at_once_with_its_person(another: Another) -> None:
     open_now: list[str] = []
 
@@ -206,6 +207,7 @@ def test_a_new_tab_follows_runs_and_its_own_control(another: Another, peaks: Ser
 # ------------------------------------------------------------ no mends, a restart
 
 
+@pytest.mark.slow
 def test_a_slider_moves_the_picture_without_any_mend(
     another: Another, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -229,6 +231,7 @@ def test_a_slider_moves_the_picture_without_any_mend(
         page.close()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(600)  # three servers and pages
 def test_the_work_survives_the_death_of_the_server(another: Another, tmp_path: Path, repo_root: Path) -> None:
     port, bench = free_port(), another()
@@ -268,6 +271,7 @@ def test_the_work_survives_the_death_of_the_server(another: Another, tmp_path: P
 # ------------------------------------------------------------ one view alone
 
 
+@pytest.mark.slow
 def test_one_view_fills_the_window_without_controls(another: Another) -> None:
     bench = another(600, 380)
     page = bench.page

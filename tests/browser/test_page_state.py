@@ -206,6 +206,7 @@ def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
     assert second.session_id != first.session_id
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_one_presents_and_the_others_watch(fresh: Bench, session: Session, another: Another) -> None:
     other = another().open(f"s/{fresh.session_id}/")

@@ -133,6 +133,7 @@ def test_the_guide_has_every_recipe(repo_root: Path) -> None:
         assert sum(kind == "line" for kind, _, _ in blocks) == 1, f"{name}: one line of a registry"
 
 
+@pytest.mark.slow
 def test_the_contract_tests_pass_with_all_examples(program: Path) -> None:
     for module in ("scenario.guide", "scenario.schema_file", "analysis.network_table"):  # make guide
         python(program, "-m", f"navcore.{module}")

@@ -4,6 +4,7 @@ import json
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
 from navcore.engine.measures import metrics
@@ -47,6 +48,7 @@ def test_any_scenario_ends_in_numbers_or_words(data):
     json.dumps(metrics(run), allow_nan=False)
 
 
+@pytest.mark.slow
 @given(data=raw_scenarios(duration_h=DURATION_H))
 @settings(max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 def test_a_method_runs_the_same_alone(data):

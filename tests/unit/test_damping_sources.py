@@ -106,6 +106,7 @@ def test_the_floor_stands_beside_methods_that_read_the_log(steady: bool) -> None
     assert own.floor.rms.tilt_rad is None and "no method uses the log" in own.floor_note
 
 
+@pytest.mark.slow
 def test_a_search_without_the_log_has_no_floor_of_it() -> None:
     quiet = {"bias_mps": [0.0, 0.0], "tide_mps": [0.0, 0.0]}
     results = []

@@ -101,6 +101,7 @@ def test_command_confirms_unless_told_otherwise(tmp_path: Path, capsys: pytest.C
     assert "run, 32 seeds" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_proposal_that_runs_refute_gives_way_to_one_over_the_run() -> None:
     """On a ship with biases and little noise the steady state prefers damping under which 24 h modes grow."""
     day, vary = ship(run={"duration_h": 24.0, "step_s": 2.0}), [f"{ZETA}=0.05:10", f"{ETA}=0.05:10"]
@@ -111,6 +112,7 @@ def test_a_proposal_that_runs_refute_gives_way_to_one_over_the_run() -> None:
     assert found.judged == "ensemble" and "no better in the runs" in found.warnings[0]
 
 
+@pytest.mark.slow
 def test_a_proposal_that_is_worse_on_a_recorded_track_is_marked() -> None:
     """The recorded log counts as free of error: what is promised (-93 %) does not come true (+16 %)."""
     recorded = load("sikuliaq-recorded", ['method.2.network={id="compass"}'])

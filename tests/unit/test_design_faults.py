@@ -120,6 +120,7 @@ def test_what_is_in_reach_is_told_however_large_it_is() -> None:
     assert reached > 5000.0
 
 
+@pytest.mark.slow
 def test_a_requirement_that_is_met_by_chance_is_not_called_active() -> None:
     """Settling holds the optimum back here; the velocity comes near its own limit with it."""
     found = tune(
@@ -221,6 +222,7 @@ def test_a_method_that_diverges_leaves_the_others_their_budget(
     assert "the loop is unstable as it is sampled" in methods[1]["warnings"][0]
 
 
+@pytest.mark.slow
 def test_an_unstable_start_is_no_hindrance(saved: Any, capsys: pytest.CaptureFixture[str]) -> None:
     """The present setting has no figures; the search comes to the optimum that a stable start finds."""
     gains = {"id": "compass", "k1": 1e-5, "k2": 0.5, "k3": 1e-3}

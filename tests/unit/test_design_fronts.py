@@ -79,6 +79,7 @@ def test_a_point_whose_whole_system_grows_has_an_open_mark(found: Pareto) -> Non
         assert said == (["open mark: its whole system grows"] if symbol else [])
 
 
+@pytest.mark.slow
 def test_fronts_stay_within_the_sliders_unless_asked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -98,6 +99,7 @@ def test_fronts_stay_within_the_sliders_unless_asked(
     assert ends[1] < 0.9 * ends[0]
 
 
+@pytest.mark.slow
 def test_the_end_of_a_front_over_the_run_is_found(ship: Scenario) -> None:
     """A dense search (1,586 runs) knows a velocity 5 % below what weighted searches alone find."""
     known = with_network(ship, 2, {"id": "unity2", "zeta": 5.0, "r": 1.01006, "zeta2": 3.988})

@@ -88,6 +88,7 @@ def test_an_optimum_at_the_end_of_a_range_is_told(
     assert found.at_end_of_range == tuple(f"method.0.network.{name}" for name in at_end)
 
 
+@pytest.mark.slow
 def test_a_24_h_mode_that_grows_is_told_with_the_proposal() -> None:
     """The tilt of one channel does not see it; a requirement takes it, and the sentence, away."""
     ship, vary = set_a({"id": "optimal"}), ["method.0.network.q=0:5"]
@@ -107,6 +108,7 @@ def test_a_recorded_log_is_told_to_count_as_free_of_error() -> None:
     assert told in tune(recorded, "settling_s", [f"method.{index}.network.zeta"]).warnings
 
 
+@pytest.mark.slow
 def test_an_active_requirement_is_named_with_its_cost() -> None:
     """Less velocity error costs tilt; without the requirement the tilt is that of the free optimum."""
     found = tune(set_a({"id": "compass"}), "tilt_rms", COMPASS, ["log_tilt<=20arcsec", "settling_s<=48h"])
@@ -115,6 +117,7 @@ def test_an_active_requirement_is_named_with_its_cost() -> None:
     assert found.cost["log_tilt<=20arcsec"] / ARCSEC == pytest.approx(4.850, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_requirements_that_nothing_meets_say_what_each_costs() -> None:
     """Both are named, with what is in reach alone and the objective without each."""
     with pytest.raises(InputError) as caught:
@@ -125,6 +128,7 @@ def test_requirements_that_nothing_meets_say_what_each_costs() -> None:
     assert "without it tilt_rms comes to" in lines[0]
 
 
+@pytest.mark.slow
 def test_a_weighted_sum_lies_between_its_parts() -> None:
     """Neither the best tilt nor the best velocity."""
     scenario = set_a({"id": "compass"})
@@ -135,6 +139,7 @@ def test_a_weighted_sum_lies_between_its_parts() -> None:
     assert sorted((tilt, velocity))[0] <= both.best[SIGMA] <= sorted((tilt, velocity))[1]
 
 
+@pytest.mark.slow
 def test_the_worst_of_two_scenarios_counts() -> None:
     """A noisier log asks for a slower loop: the compromise is the slower one's optimum or in between."""
     quiet = set_a({"id": "compass"})

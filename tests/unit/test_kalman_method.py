@@ -69,6 +69,7 @@ def test_its_covariance_comes_to_the_floor() -> None:
     assert np.linalg.eigvalsh(P / np.sqrt(np.outer(np.diag(P), np.diag(P)))).min() > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
 def test_its_covariance_holds_over_seeds(fidelity: str) -> None:
     """Normalised error of a moving ship with a log along its axes, biases and initial errors drawn."""

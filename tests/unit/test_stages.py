@@ -1,7 +1,9 @@
 """The sums over the stages, and the Makefile's answers where it cannot go on."""
 
+import os
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -58,6 +60,27 @@ def test_stages_side_by_side_run_their_files_and_fail_where_these_are_gone(
     printed = capsys.readouterr().out
     assert "No module named no_such_module" in printed.partition("== broken\n")[2].partition("\n== ")[0]
     assert counts[0].passed > 0
+
+
+def test_make_test_leaves_slow_tests_to_continuous_integration(repo_root: Path) -> None:
+    def would_run(*given: str) -> str:
+        make = ["make", "--dry-run", "test", *given]
+        done = subprocess.run(make, cwd=repo_root, capture_output=True, text=True, check=True)
+        return done.stdout.splitlines()[-1]
+
+    assert would_run() == "SCHULER_QUICK=yes .venv/bin/python -m tools.stages"
+    assert would_run("SLOW=yes").strip() == ".venv/bin/python -m tools.stages"
+    assert "test SLOW=yes" in (repo_root / ".ci" / "run").read_text()
+
+
+@pytest.mark.parametrize("quick", ["", "yes"])
+def test_a_quick_run_leaves_out_what_is_slow(repo_root: Path, quick: str) -> None:
+    file, slow = "tests/unit/test_kalman_method.py", "test_its_covariance_holds_over_seeds"
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "--collect-only", "-q", "-n0", file],
+        cwd=repo_root, env=os.environ | {"SCHULER_QUICK": quick}, capture_output=True, text=True,
+    )  # fmt: skip
+    assert (slow in done.stdout) == (not quick) and done.stdout.count(f"{file}::") > 3
 
 
 @pytest.fixture

@@ -16,6 +16,7 @@ def links(window: Bench, name: str) -> None:
     see(window, found).click()
 
 
+@pytest.mark.slow
 def test_a_newcomer_is_greeted_in_the_language_of_the_browser_and_can_change_it(visitor: Bench) -> None:
     page = visitor.page
     page.goto(f"{visitor.url}?fixedDpr=0.25")

@@ -85,6 +85,7 @@ def test_p_pins_a_typed_value(window: Bench, ends: str) -> None:
     assert box.input_value() == "0.53"
 
 
+@pytest.mark.slow
 def test_a_watcher_is_told_and_follows_the_tabs(window: Bench, visitor: Bench) -> None:
     place(window, "Poles")
     visitor.open(f"s/{window.session_id}/")
@@ -133,6 +134,7 @@ def test_a_lost_server_is_told(visitor: Bench, lost: Callable[[], None]) -> None
     read(visitor, visitor.page.locator("#sb-lost[role=alert]"))
 
 
+@pytest.mark.slow
 def test_an_address_opens_tabs_and_one_view_alone(window: Bench, visitor: Bench) -> None:
     tabs = ["Sensors", *(["Frequency"] if layout_for(*window.size).two else []), "Spectrum"]
     window.tab(*tabs)
@@ -167,6 +169,7 @@ def test_an_address_opens_tabs_and_one_view_alone(window: Bench, visitor: Bench)
     assert source != visitor.url and source.split("/s/")[0] == visitor.url.split("/s/")[0].rstrip("/")
 
 
+@pytest.mark.slow
 def test_presentation_size_is_large_folded_and_whole(window: Bench) -> None:
     page, height = window.page, window.page.viewport_size["height"]
     window.tab("Run")
