@@ -2,14 +2,13 @@
 
 import json
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 from typing import Any, Self, TypeVar
 from weakref import WeakKeyDictionary
 
-import pytest
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import Locator, Page
 
@@ -24,26 +23,13 @@ from schuler_bench.session.session import Session
 from schuler_bench.session.sessions import Sessions
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.page import Page as OpenPage
+from tests.browser.cases import SIZES
 from tests.browser.choosing import Choosing
 from tests.browser.fields import box_labels, slider_labels, words_of
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
 T = TypeVar("T")
 _LABEL = re.compile(r"(.+?)( [≤≥])? \(([^()]*)\)")
-
-SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
-"""Windows in which the page is looked at; most tests run in the first."""
-SWEEP = [
-    pytest.param(SIZES[0], marks=pytest.mark.slow),
-    pytest.param(SIZES[1], marks=pytest.mark.nightly),
-    SIZES[2],
-]
-"""The same for a test that runs in all of them: always in the smallest, in the one in the middle at night."""
-
-
-def first_of(cases: Iterable[Any], marks: pytest.MarkDecorator = pytest.mark.slow) -> list[Any]:
-    """Cases of a test, of which all but the first have a mark."""
-    return [pytest.param(case, marks=marks) if place else case for place, case in enumerate(cases)]
 
 
 def _has_callbacks(view: OpenPage) -> bool:

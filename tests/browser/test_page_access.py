@@ -12,7 +12,8 @@ from schuler_bench.plots.style import INK, method_color
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.views.appearance.view import COLORS
 from tests import dark_page as theme
-from tests.browser.driver import SWEEP, Bench, first_of
+from tests.browser.cases import SWEEP, first_of
+from tests.browser.driver import Bench
 from tests.browser.fields import label_of
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]

@@ -14,7 +14,8 @@ from schuler_bench.views.design.view import STOP as STOP_DESIGNS
 from schuler_bench.views.tune import finder
 from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
 from schuler_bench.views.tune.view import SEARCH_FOR
-from tests.browser.driver import SWEEP, Bench
+from tests.browser.cases import SWEEP
+from tests.browser.driver import Bench
 from tests.limits import require
 
 

@@ -14,8 +14,9 @@ from playwright.sync_api import Browser
 from tests.browser import test_page_layout as layout
 from tests.browser import test_page_scene as scene
 from tests.browser import test_page_touch as touch
+from tests.browser.cases import SIZES, first_of
 from tests.browser.conftest import Served
-from tests.browser.driver import SIZES, Bench, first_of
+from tests.browser.driver import Bench
 from tests.browser.windows import test_comparing as comparing
 from tests.browser.windows import test_opening as opening
 from tests.browser.windows import test_sharing as sharing

@@ -8,8 +8,9 @@ from playwright.sync_api import Locator
 from navcore.engine.measures import measure
 from schuler_bench.shell.layout import BAR_PX, RAIL_PX, STRIP_PX
 from schuler_bench.shell.page import Page as OpenPage
+from tests.browser.cases import SIZES, first_of
 from tests.browser.conftest import Another
-from tests.browser.driver import SIZES, Bench, first_of
+from tests.browser.driver import Bench
 from tests.limits import require
 from tools.paint.share import FRAMES, share
 

@@ -14,7 +14,8 @@ from schuler_bench.shell.layout import BAR_PX, STRIP_PX, layout_for
 from schuler_bench.views import load
 from schuler_bench.views.misprints.view import misprint_title
 from schuler_bench.views.poles.figure import ZOOM
-from tests.browser.driver import SIZES, SWEEP, Bench
+from tests.browser.cases import SIZES, SWEEP
+from tests.browser.driver import Bench
 from tests.browser.placing import place
 
 
@@ -70,6 +71,7 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
     assert "schema = 1" in page.locator("pre").first.inner_text()
 
 
+@pytest.mark.slow
 def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Bench) -> None:
     page, why = moving.page, moving.page.locator("#sb-why")
     line = why.locator("div").first
@@ -157,7 +159,7 @@ def middle(located: Locator) -> float:
 
 
 def test_tools_are_level_with_the_tabs_and_only_the_main_button_is_filled(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", "Poles", "Spectrum", "Files")
+    bench.reset("sikuliaq-like", "Poles", "Spectrum")
     page = bench.page
     for tab, tool in (("Poles", bench.button("Place")), ("Spectrum", bench.box("spectrum of"))):
         wait_until_it_fits(bench, tab)
@@ -166,7 +168,8 @@ def test_tools_are_level_with_the_tabs_and_only_the_main_button_is_filled(bench:
     wait_until_it_fits(bench, "Metrics", scrolls=True)
     assert bench.box("errors over").bounding_box()["width"] < 420
     fill = "node => getComputedStyle(node).backgroundColor"
-    main, other = (bench.button(name).evaluate(fill) for name in ("Upload a file", "Download scenario.toml"))
+    bench.tab("Compare")
+    main, other = (bench.button(name).evaluate(fill) for name in ("Pin this run", "Flip to the baseline"))
     assert other == "rgb(255, 255, 255)" and main != other
 
 

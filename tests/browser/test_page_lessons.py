@@ -11,8 +11,9 @@ from schuler_bench.views.learn.names import named
 from schuler_bench.views.learn.own import use_lessons
 from schuler_bench.views.learn.view import spec_at
 from tests.answers import names_in, right_answer
+from tests.browser.cases import first_of
 from tests.browser.conftest import Another
-from tests.browser.driver import Bench, first_of
+from tests.browser.driver import Bench
 
 SECTION = ".sb-lesson:not(.sb-question):not(.sb-below)"
 # Numbers of the text as they are shown, by their name.

@@ -189,6 +189,7 @@ def peaks_of(session: Session, unit: float = 1.0) -> list[str]:
     return [f"{method.errors['position_m']['max_abs'] / unit:.6g}" for method in session.run.methods]
 
 
+@pytest.mark.slow
 def test_a_new_tab_follows_runs_and_its_own_control(another: Another, peaks: Served) -> None:
     bench = another(1920, 1080)
     bench.url, bench.sessions = peaks[0].url, peaks[1].sessions
@@ -299,6 +300,7 @@ def test_one_view_fills_the_window_without_controls(another: Another) -> None:
     page.get_by_role("dialog", name="Keys").wait_for()
 
 
+@pytest.mark.slow
 def test_the_map_fills_the_window_without_controls(another: Another) -> None:
     bench, looks = another(600, 380), []
     page = bench.page

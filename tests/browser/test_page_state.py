@@ -164,6 +164,7 @@ def test_the_keys_are_listed_and_escape_closes_the_list(fresh: Bench) -> None:
     dialog.wait_for(state="hidden")
 
 
+@pytest.mark.slow
 def test_the_page_may_ask_faster_than_viser_sends(fresh: Bench, session: Session) -> None:
     for xi in ("0.6", "0.5", "0.4", "0.3"):
         fresh.type(XI, xi)

@@ -170,6 +170,7 @@ def whole(bench: Bench) -> Bench:
     return bench
 
 
+@pytest.mark.slow
 def test_modes_growth_and_the_line_under_the_network_are_the_engines(whole: Bench) -> None:
     whole.choose("poles of", "system")
     whole.page.wait_for_selector(".gtitle, .annotation-text:has-text('Growth of the 24 h mode')")
