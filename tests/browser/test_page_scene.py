@@ -9,6 +9,7 @@ from schuler_bench.plots import style
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.views.scene.playback import SPEEDS
 from schuler_bench.views.scene.track import track
+from tests.browser.conftest import Another
 from tests.browser.driver import SIZES, Bench
 
 
@@ -217,3 +218,19 @@ def test_a_slider_is_answered_while_it_plays(still: Bench) -> None:
     wait_for(still, "n.count > arg", last["count"] + 2)
     command(still, "play")
     wait_for(still, "!n.playing")
+
+
+def test_the_3d_view_is_small_until_the_page_is_there(another: Another) -> None:
+    """Without a GPU each picture of a whole window took a tenth of a second while the page opened."""
+    bench = another(1366, 768)
+    bench.page.add_init_script("""
+      window.widths = [];
+      (function watch() {
+        const view = document.querySelector("canvas[data-engine]");
+        if (view && document.getElementById("sb-veil")) window.widths.push(view.clientWidth);
+        requestAnimationFrame(watch);
+      })();""")
+    bench.open()
+    widths = bench.page.evaluate("() => window.widths")
+    assert widths and max(widths) <= 16
+    assert bench.page.locator("canvas[data-engine]").bounding_box()["width"] > 200
