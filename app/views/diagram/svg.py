@@ -56,10 +56,11 @@ def diagram_svg(found: Diagram, color: str, state: State, commands: bool = True)
     parts = [_drawn(part, pen) for part in found.parts]
     ends = Text.joined("", (_end(hue) for hue in (style.MUTED, color, style.REFERENCE)))
     return Text(
-        '<svg class="sb-d" viewBox="0 0 {width} {height:g}" role="img" xmlns="http://www.w3.org/2000/svg" '
+        '<svg class="sb-d" viewBox="0 0 {width} {height:g}" role="{role}" xmlns="http://www.w3.org/2000/svg" '
         'font-family="{font}" aria-label="{told:html}"><style>{css}</style><defs>{ends}</defs>{parts}</svg>',
         width=WIDTH,
         height=found.height,
+        role="group" if commands else "img",  # an image holds no buttons
         font=style.SVG_FONT,
         told=found.told,
         css=_STYLE,
