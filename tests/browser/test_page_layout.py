@@ -173,6 +173,17 @@ def test_tools_are_level_with_the_tabs_and_only_the_main_button_is_filled(bench:
     assert other == "rgb(255, 255, 255)" and main != other
 
 
+def test_tools_do_not_lie_under_the_list_of_further_tabs(moving: Bench) -> None:
+    moving.tab("Frequency")
+    more = moving.page.locator(".sb-more-tabs").first
+    for width in (1300, 1240):
+        moving.resize((width, 1080))
+        wait_until_it_fits(moving, "Frequency")
+        listed, tool = more.bounding_box(), moving.box("optimal H").bounding_box()
+        beside, below = tool["x"] + tool["width"] <= listed["x"], tool["y"] >= listed["y"] + listed["height"]
+        assert beside or below, (width, listed, tool)
+
+
 def uncovered(bench: Bench) -> int:
     """Number of labels in view on all tabs, the same one on each; none is covered by its "?"."""
     count = 0

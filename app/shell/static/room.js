@@ -51,8 +51,11 @@
       area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
       area.style.setProperty("--sb-left-px", `${end - start + 10}px`);
       area.style.setProperty("--sb-right-px", `${(more?.offsetWidth ?? 0) + 8}px`);
-      const rows = tools.map((tool) => Math.round(tool.getBoundingClientRect().top));
-      return Math.max(...rows) - Math.min(...rows) <= strip.offsetHeight / 2 && viewport.scrollWidth <= viewport.clientWidth;
+      const boxes = tools.map((tool) => tool.getBoundingClientRect());
+      const rows = boxes.map(({ top }) => Math.round(top));
+      const right = area.getBoundingClientRect().right - (more?.offsetWidth ?? 0);
+      return Math.max(...rows) - Math.min(...rows) <= strip.offsetHeight / 2 &&
+        boxes.every((box) => box.right <= right + 1) && viewport.scrollWidth <= viewport.clientWidth;
     };
     if (fits()) return;
     const labelled = !strip.hasAttribute("data-sb-bare");
