@@ -56,7 +56,7 @@ def _interval(share: dict[str, float]) -> str:
 
 
 def _depending(methods: list[dict[str, Any]]) -> list[str]:
-    """What moves the first metric most, and its Sobol indices, for each method."""
+    """Quantity that moves the first metric most, and its Sobol indices, for each method."""
     lines: list[str] = []
     for method in methods:
         for key, found in [*method.get("tornado", {}).items()][:1]:

@@ -1,4 +1,4 @@
-"""What choosers say in place of a file's values: ``external`` is "external (log)"."""
+"""Words of choosers for the values of a file: ``external`` is "external (log)"."""
 
 import re
 

@@ -160,7 +160,7 @@ def refuse_address(access: Access, headers: RequestHeaders) -> Refusal | None:
 
 @dataclass(frozen=True)
 class Shown:
-    """What a request shows for the token.
+    """Token or cookie with which a request asks for access.
 
     Attributes
     ----------

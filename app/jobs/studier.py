@@ -46,7 +46,7 @@ class StudyTask:
 
 @dataclass(frozen=True)
 class StudyResult:
-    """What a study gave.
+    """Result of a study.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Studier(Search[StudyTask, StudyResult]):
 
     @property
     def left(self) -> StudyTask | None:
-        """What is still to be done of the last study; None when it is complete."""
+        """Rest of the last study; None when it is complete."""
         found, asked = self.result, self.asked
         if found is None or asked is None or found.complete:
             return None

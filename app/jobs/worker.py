@@ -145,7 +145,7 @@ class Worker(Generic[Job]):
             return self._changed.wait_for(lambda: not self._slot and self._watch is None, timeout_s)
 
     def note(self, item: Job) -> str:
-        """What the load of an item says to who waits for it."""
+        """Message of an item's load to whoever waits for it."""
         return self._load(item).note
 
     def _stand_in_line(self) -> None:

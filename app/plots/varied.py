@@ -1,4 +1,4 @@
-"""What a sweep or a study varies, in words: labels of its quantities and of their values."""
+"""Labels of the quantities that a sweep or a study varies, and of their values."""
 
 from collections.abc import Mapping
 

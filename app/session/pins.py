@@ -295,7 +295,7 @@ def _free_color(pins: Sequence[Pin], first: str = next(iter(COLORS))) -> str:
 
 
 def _content(pin: Pin) -> tuple[object, ...]:
-    """What makes it another pin for a reader: neither its id nor how it looks."""
+    """Fields that make it another pin for a reader: neither its id nor its look."""
     return "" if pin.unnamed else pin.name, pin.note, pin.scenario, pin.method
 
 

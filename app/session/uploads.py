@@ -128,7 +128,7 @@ class Uploads:
         return found
 
     def _found(self, path: Path, stored: Path, map_text: str) -> Upload:
-        """What a stored file holds that is to be at ``path``; raises `InputError` when it is not kept."""
+        """Content of a stored file that is to be at ``path``; raises `InputError` when it is not kept."""
         report, table, data = guarded.call(path.name, look_at, stored, map_text)
         faults = tuple(Fault(_own(f.where, stored, path), f.field, f.value, f.allowed) for f in report.faults)
         if faults and table is None:

@@ -30,7 +30,7 @@ _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
 
 
 class HeaderPanel:
-    """What the top bar says of scenario and run.
+    """Scenario and run in the top bar.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is suspicious in a recorded IMU: units that would explain it, stuck sensors, which way is up."""
+"""Suspicions about a recorded IMU: units that would explain it, stuck sensors, which way is up."""
 
 import numpy as np
 

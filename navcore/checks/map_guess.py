@@ -43,7 +43,7 @@ _TIME_FORMS = tuple(
 
 
 class Preview(NamedTuple):
-    """What a table looks like before it is read.
+    """Look of a table before it is read.
 
     Attributes
     ----------

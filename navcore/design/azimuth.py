@@ -15,7 +15,7 @@ DV_E, LATITUDE, PHI_U = 0, 2, 6
 
 @dataclass(frozen=True, eq=False)
 class AzimuthForm:
-    """What turns the platform about the vertical: z' = A z + B u, c_U = C z + D u, at the step of the law.
+    """Law about the vertical: z' = A z + B u, c_U = C z + D u, at the step of the law.
 
     Attributes
     ----------

@@ -102,7 +102,7 @@ def needed(
 
 @dataclass(eq=False)
 class _Parts:
-    """What one group of figures adds to the limited quantities of one method.
+    """Share of one group of figures in the limited quantities of one method.
 
     `ratios` are medians over their limits with the figures as they are, later those that runs correct.
     """

@@ -95,7 +95,7 @@ def _steady_filter(
 
 
 def _left_by_filter(model: StochasticModel, omega_s: float) -> dict[str, Entry]:
-    """What biases leave that the filter is told of.
+    """Errors that remain of the biases of which the filter is told.
 
     It sees the velocity R eps of a gyro's bias with the log's bias on top, and parts the two by their
     standard deviations; the tilt nabla / g of an accelerometer it cannot see.

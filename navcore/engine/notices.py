@@ -1,4 +1,4 @@
-"""What a run says of its scenario's inputs: recordings, what is simulated beside them, waves, the site."""
+"""Notices of a run about its inputs: recordings, errors simulated beside them, waves, the site."""
 
 import math
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,4 @@
-"""What ``--out`` names and cannot be used, as a fault of that option."""
+"""Faults of ``--out``: a path that cannot be used."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

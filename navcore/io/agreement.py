@@ -38,7 +38,7 @@ _WORDS = (Text("the speed through the water"), Text("the speed to starboard thro
 
 
 class Finding(NamedTuple):
-    """What a stream is off by.
+    """Offset of a stream.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ def clock_text(recording: Recording) -> str:
 
 
 def _of_speeds(water: Series | None, way: Way) -> tuple[Callable[[float], float], float] | None:
-    """What the speed through the water leaves of the changes over ground, m/s, by the time it is late.
+    """Rest of the changes over ground that the speed through the water leaves, m/s, by the time it is late.
 
     And the time that both share, s. Each shift leaves its share of what changes while both are there, so that
     a steady part does not fit by itself. A log that is infinitely late says nothing: all changes are left.

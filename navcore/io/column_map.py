@@ -106,7 +106,7 @@ class QuantityMap(Parameters):
 
 
 class ColumnMap(Parameters):
-    r"""What the columns of one kind of table mean.
+    r"""Meaning of the columns of one kind of table.
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def _unit(text: str, dimension: str) -> str:
 
 
 def _meant(name: str, entry: QuantityMap) -> tuple[str, str]:
-    """What a quantity's name says, and the unit of its column; empty when it is not known."""
+    """Meaning of a quantity's name, and the unit of its column; empty when it is not known."""
     stem, column = next((s, c) for s, c in known_columns([name]).items() if s in QUANTITIES)
     if entry.unit:
         return stem, _unit(entry.bare_unit, QUANTITIES[stem].dimension)

@@ -21,7 +21,7 @@ _FEWEST = 8
 
 
 class Evenness(NamedTuple):
-    """What stamps say.
+    """Times that stamps give.
 
     Attributes
     ----------

@@ -25,7 +25,7 @@ _COLUMNS = {
     "speed": "sog_mps",
     "course": "cog_deg",
 }
-"""What GPX calls it, and our name of it; speed and course are those of GPX 1.0 and of extensions."""
+"""Names in GPX and ours; speed and course are those of GPX 1.0 and of extensions."""
 _NEEDED = ("time", "lat", "lon")
 
 
@@ -72,7 +72,7 @@ def read(path: Path) -> Recording:
 
 
 def _points(where: str, text: str) -> list[dict[str, str]]:
-    """What each track point holds, by the names of `_COLUMNS`."""
+    """Values of each track point, by the names of `_COLUMNS`."""
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         allowed = Text("defines entities of its own, which a GPX file has no need of")
         raise InputError(Fault(where, "", None, allowed))

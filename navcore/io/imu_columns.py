@@ -85,7 +85,7 @@ def imu_columns(names: Sequence[str]) -> dict[tuple[str, str], ImuColumn]:
 
 
 def imu_column(index: int, name: str) -> ImuColumn | None:
-    """What a name says; None when it is no column of an IMU."""
+    """Meaning of a name; None when it is no column of an IMU."""
     bare, texts = without_brackets(name)
     plain = plain_name(bare)
     words = plain.split("_")

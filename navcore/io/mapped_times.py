@@ -65,7 +65,7 @@ class MappedClock:
         return self.counted(parsed)
 
     def counted(self, parsed: np.ndarray) -> tuple[np.ndarray, bool]:
-        """What `seconds` gave, shape (n,), as s, and whether it is dated."""
+        """Times of `seconds`, shape (n,), as s, and whether they are dated."""
         if self._time.unit == GPS_WEEK:
             return gps_to_unix(parsed), True
         if self._time.numeric:
@@ -97,7 +97,7 @@ class MappedClock:
         return self._last
 
     def warnings(self) -> list[str]:
-        """What was assumed of the times that were read."""
+        """Assumptions about the times that were read."""
         if not self.twice:
             return []
         return [

@@ -15,7 +15,7 @@ from navcore.io.nmea_readings import Channel
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
 
 Picked = tuple[str, np.ndarray, np.ndarray]
-"""What it was read from, UTC in s, shape (n,), and values, shape (n, k)."""
+"""Source, UTC in s, shape (n,), and values, shape (n, k)."""
 
 
 def recognises(candidate: Candidate) -> bool:

@@ -95,6 +95,6 @@ def measures(modes: str) -> float:
 
 @lru_cache(maxsize=4096)
 def doubt(modes: str) -> str:
-    """What the letters of a receiver's mode, one a system, say of the fix when all agree."""
+    """Kind of fix that the letters of a receiver's mode, one a system, give when all agree."""
     said = set(modes) - {"N"}
     return _MODES.get(said.pop(), "") if len(said) == 1 else ""

@@ -1,4 +1,4 @@
-"""What stands for no reading: "not available" of AIS, and 0 N 0 E of a receiver without a fix."""
+"""Values that stand for no reading: "not available" of AIS, and 0 N 0 E of a receiver without a fix."""
 
 from dataclasses import replace
 

@@ -102,7 +102,7 @@ _SIGNS = re.compile(r"[^a-z0-9]+")
 
 
 class Written(NamedTuple):
-    """What the words in the brackets of a column say.
+    """Meaning of the words in the brackets of a column.
 
     Attributes
     ----------

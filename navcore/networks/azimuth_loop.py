@@ -1,4 +1,4 @@
-"""What acts in the azimuth channel, and the gains of a gyrocompass (theory.md 6.1, Deng 5)."""
+"""Loops of the azimuth channel, and the gains of a gyrocompass (theory.md 6.1, Deng 5)."""
 
 from typing import NamedTuple
 
@@ -27,4 +27,4 @@ def azimuth_gains(sigma: float, xi: float, omega_s: float, gravity: float) -> Az
 
 
 AzimuthChannel = LinearNetwork | AzimuthGains
-"""What acts in the azimuth channel: Y(s) of whole damping, or a gyrocompass."""
+"""Loop of the azimuth channel: Y(s) of whole damping, or a gyrocompass."""

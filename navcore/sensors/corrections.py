@@ -22,7 +22,7 @@ Field = tuple[str, str]
 
 
 class Correction(NamedTuple):
-    """What of the recordings does not agree, and the value of the scenario that mends it.
+    """Disagreement of recordings, and the value of the scenario that mends it.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What rounding leaves of a reading: an error that stands while the reading does, and one like noise.
+"""Errors that rounding makes of a reading: one that stands while the reading does, and one like noise.
 
 A reading x with noise of standard deviation sigma is rounded to a resolution q. Its mean error is a sawtooth
 of x that the noise smooths,

@@ -307,7 +307,7 @@ class _Log:
 
 
 class _Readings(NamedTuple):
-    """What the errors of a reading are made of: turned by ``turn``, with the log's own errors, plus the rest.
+    """Parts of the errors of a reading: turned by ``turn``, with the log's own errors, plus the rest.
 
     ``along_axes``: the reading in the log's axes, m/s, as far as it does not cancel. ``turn``: sine and
     cosine of the present heading, one row a time, none of a log in E and N. ``rest``: E and N, m/s.

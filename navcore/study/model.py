@@ -64,7 +64,7 @@ class Factor(Parameters):
 
     @property
     def depth(self) -> int:
-        """What it leaves as it is: 0 nothing, 2 the truth, 3 truth, sensors and log."""
+        """Parts of a run that it leaves as they are: 0 none, 2 the truth, 3 truth, sensors and log."""
         blocks = {field.partition(".")[0] for field in self.fields}
         if blocks <= {"method", "requirement"}:
             return 3

@@ -27,7 +27,7 @@ Row = dict[str, Any]
 Stopped = Callable[[], bool]
 Result = MethodRun | Outcome
 Engine = Callable[[Plan, range, Stopped], Iterator[tuple[int, list[Row]]]]
-"""What carries runs out: `run_points`, here or on another machine."""
+"""Function that carries runs out: `run_points`, here or on another machine."""
 
 
 def run_points(plan: Plan, numbers: Iterable[int], stopped: Stopped) -> Iterator[tuple[int, list[Row]]]:

@@ -1,4 +1,4 @@
-"""What a study says: shares with their intervals, quantiles, and which method is best where."""
+"""Summary of a study: shares with their intervals, quantiles, and which method is best where."""
 
 from __future__ import annotations
 

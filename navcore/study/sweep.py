@@ -253,4 +253,4 @@ _AXES: dict[str, Callable[[Scenario], _Axis | str]] = {
     "sea": _sea,
 }
 KEYS = (*_AXES,)
-"""What can be varied, the dearest last."""
+"""Quantities that can be varied, the dearest last."""

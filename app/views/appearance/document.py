@@ -329,7 +329,7 @@ def _pins(session: Session) -> str:
 
 
 def _reasons(run: Run, place: int, color: str, name: str) -> str:
-    """What dominates the errors of the method that is or was edited: a tenth of a second each."""
+    """Sources that dominate the errors of the method that is or was edited: a tenth of a second each."""
     from navcore.design.dominance import why
 
     result = why(replace(run, methods=run.methods[: place + 1][-1:]))

@@ -120,7 +120,7 @@ def limits_wanted() -> str:
 
 
 def _robust_title(found: Robust) -> str:
-    """What the rows are, and what the most robust one costs in the scenario itself."""
+    """Explanation of the rows, and the cost of the most robust one in the scenario itself."""
     return Text(
         "Every network, tuned for the worst of {points} points of the study, and there; the first is worst "
         "with {where}. Price: {price} % of the seeds of this scenario",
@@ -143,7 +143,7 @@ def _title(text: str) -> str:
 
 
 def _in_run(run: Run) -> list[str]:
-    """What the run makes of the limits, a method: its answer to a slider, before any seed is run."""
+    """Verdict of the run on the limits of a method: the answer to a slider, before any seed is run."""
     judged = asked(run, run.scenario.requirement)
     said = []
     for k in range(len(run.methods)):

@@ -31,7 +31,7 @@ _LETTERS = 21
 
 @dataclass(frozen=True)
 class State:
-    """What the law does at a moment.
+    """State of the law at a moment.
 
     Attributes
     ----------
@@ -245,7 +245,7 @@ def _damping(scenario: Scenario, method: Method, state: State) -> Iterator[Part]
 
 
 def _compared(y: float, log: Block | None, name: str, *above: Line) -> Iterator[Part]:
-    """What the log says, if there is one, from what comes from above."""
+    """Difference to the log, if there is one, from the signal that comes from above."""
     if log is not None:
         yield log
         yield Line(((112, y), (219, y)), own=True)

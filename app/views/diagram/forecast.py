@@ -1,4 +1,4 @@
-"""What an averaging method's copies run on, against what came (Zhao 2015, figures 4 to 6)."""
+"""Forecast of an averaging method's copies, against the errors that came (Zhao 2015, figures 4 to 6)."""
 
 import numpy as np
 

@@ -78,7 +78,7 @@ class DiagramView(PictureView[str]):
 
 
 def state_at(method: MethodRun, t_s: float) -> State:
-    """What a method's law does at a time: the output row at or before it."""
+    """State of a method's law at a time: that of the output row at or before it."""
     if not method.method.kind.uses_network or not len(method.t_s):
         return State()
     row = method.rows[max(int(method.t_s.searchsorted(t_s, "right")) - 1, 0)]

@@ -1,4 +1,4 @@
-"""What a column of an uploaded table may mean, in words, and how a choice changes the data of a map."""
+"""Meanings that a column of an uploaded table may have, and how a choice changes the data of a map."""
 
 from __future__ import annotations
 

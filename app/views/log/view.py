@@ -179,7 +179,7 @@ class LogView(FieldsView):
 
 
 def _told(fitted: FittedLog) -> str:
-    """What the fit found, and the log against the track."""
+    """Result of the fit, and the log against the track."""
     return notices.note(fit_lines(fitted), "info") + log_svg(fitted.log, fitted.fit.delay_s)
 
 

@@ -98,7 +98,7 @@ def _head(heads: Sequence[str], of_words: Set[int]) -> str:
 
 
 def metrics_of(document: dict[str, Any]) -> tuple[str, ...]:
-    """What can be shown: metrics of runs, and the share of runs that meets the limits."""
+    """Quantities to choose from: metrics of runs, and the share of runs that meets the limits."""
     methods = document["methods"]
     keys = tuple(key for key in methods[0]["metrics"] if QUANTITIES[key].kind) if methods else ()
     return (*keys, MET) if methods and MET in methods[0] else keys
