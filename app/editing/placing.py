@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from navcore.analysis import analyse
 from navcore.analysis.placement import LEAST_DAMPING, place, placeable
+from navcore.design.vary import network_not_in_force
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -138,6 +139,8 @@ def with_pair(
             name=method.name,
         )
         raise InputError(Fault("", f"method.{index}.damping", method.damping, allowed))
+    if block == "network" and (reason := network_not_in_force(method)):
+        raise InputError(Fault("", f"method.{index}.network", method.network.id, reason))
     omega_s, sign = unit_frequency(scenario, block), SIGNS[block]
     wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} {sign}"
     try:
@@ -233,7 +236,7 @@ def with_nearest_pair(
 def main_pair(scenario: Scenario, index: int, block: Block = "network") -> MainPair | None:
     """Pair of a method that can be placed, as it is; None where there is none."""
     method = scenario.method[index]
-    if method.undamped:
+    if method.undamped or (block == "network" and network_not_in_force(method)):
         return None
     return _network(method, block).main_pair(unit_frequency(scenario, block))
 
@@ -248,7 +251,10 @@ def handle_of(scenario: Scenario, index: int, block: Block = "network") -> dict[
     method, pair = scenario.method[index], main_pair(scenario, index, block)
     omega_s = unit_frequency(scenario, block)
     if pair is None:
-        reason = Text("it runs without its network") if method.undamped else _network(method, block).no_handle
+        set_so = network_not_in_force(method) if block == "network" else ""
+        reason = set_so or _network(method, block).no_handle
+        if method.undamped:
+            reason = Text("it runs without its network")
         return {"told": Text("No handle for {name}: {reason}.", name=method.name, reason=reason)}
     return {
         "method": index,

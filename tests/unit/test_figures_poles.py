@@ -169,8 +169,8 @@ class TestLocus:
         run = static_run()
         for place, field in ((0, "xi"), (2, "zeta"), (9, "xi"), (2, "")):
             assert locus_of(run, place, field) is None
-        assert locus_fields(run.methods[1].method.network) == {}
-        assert "decay rate σ (1/s)" in locus_fields(run.methods[2].method.network).values()
+        assert locus_fields(run.methods[1].method) == {}
+        assert "decay rate σ (1/s)" in locus_fields(run.methods[2].method).values()
         assert not any("locus" in str(t.get("name")) for t in poles(run, selected=0, locus="xi")["data"])
 
 

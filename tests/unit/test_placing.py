@@ -8,6 +8,7 @@ import pytest
 from navcore.analysis import analyse
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import InputError
+from navcore.law.policy.constant import Constant
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing.placing import (
@@ -19,6 +20,7 @@ from schuler_bench.editing.placing import (
     with_nearest_pair,
     with_pair,
 )
+from schuler_bench.views.poles.grid import locus_fields
 from tests.unit.figures_runs import THREE, scenario
 
 NETWORKS = ["compass", "unity2", "pole2", "complementary"]
@@ -74,6 +76,19 @@ def test_what_cannot_be_placed_says_why_and_where_the_pair_is(
     with pytest.raises(InputError) as refused:
         with_pair(scenario(), index, 0.5, ratio)
     assert [word for word in words if word not in str(refused.value)] == []
+
+
+def test_what_a_policy_sets_has_neither_handle_nor_locus() -> None:
+    before = load("sun-ship")
+    adaptive = before.method[2]
+    assert adaptive.policy.id == "adaptive"
+    told = 'policy "adaptive" sets ζ while it runs'
+    assert handle_of(before, 2)["told"] == f"No handle for {adaptive.name}: {told}."
+    for placing in (with_pair, with_nearest_pair):
+        with pytest.raises(InputError, match=told):
+            placing(before, 2, 0.5, 1.0)
+    always = adaptive.model_copy(update={"policy": Constant()})
+    assert "zeta" not in locus_fields(adaptive) and "zeta" in locus_fields(always)
 
 
 def test_a_limit_of_the_slope_refuses_what_lets_the_24_h_mode_grow() -> None:

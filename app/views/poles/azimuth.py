@@ -6,6 +6,7 @@ import numpy as np
 
 from navcore.analysis import analyse
 from navcore.engine.run import MethodRun, Run
+from navcore.law.policy.constant import Constant
 from navcore.networks.azimuth_loop import AzimuthGains
 from navcore.networks.undamped import UndampedNetwork
 
@@ -28,6 +29,5 @@ def _slow(run: MethodRun) -> MethodRun:
     loop = analyse(network)
     if not method.kind.uses_network or isinstance(channel, AzimuthGains):
         network, loop = UndampedNetwork().at_earth_rate(), replace(loop, poles=np.zeros(0, complex))
-    return replace(
-        run, method=method.model_copy(update={"network": method.azimuth}), network=network, loop=loop
-    )
+    alone = method.model_copy(update={"network": method.azimuth, "policy": Constant()})
+    return replace(run, method=alone, network=network, loop=loop)

@@ -9,13 +9,15 @@ import numpy as np
 
 from navcore.analysis.locus import Locus, root_locus
 from navcore.analysis.settling import LEVEL
+from navcore.design.vary import network_not_in_force
 from navcore.engine.run import Run
 from navcore.foundation.notation import symbol, unit_sign
 from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
-from navcore.networks.base import NetworkParameters
+from navcore.scenario.method import Method
 from schuler_bench.editing import form
+from schuler_bench.editing.placing import Block
 from schuler_bench.plots import style
 from schuler_bench.plots.plotly_data import packed
 from schuler_bench.plots.units import number
@@ -24,12 +26,16 @@ NO_LOCUS = ""
 _COUNT = 161
 
 
-def locus_fields(network: NetworkParameters) -> dict[str, str]:
-    """Parameters over which a locus can be drawn, those with a slider: field -> label with its unit."""
+def locus_fields(method: Method, block: Block = "network") -> dict[str, str]:
+    """Parameters of a method's network over which a locus can be drawn: field -> label with its unit.
+
+    They have a slider, and the method's policy does not set them.
+    """
     return {
         name: form.full_label(name, info)
-        for name, info in type(network).model_fields.items()
+        for name, info in type(getattr(method, block)).model_fields.items()
         if "slider" in (extra := extra_of(info)) and "elements" not in extra
+        if not network_not_in_force(method, f"{block}.{name}")
     }
 
 
@@ -38,7 +44,7 @@ def locus_of(run: Run, index: int, field: str) -> Locus | None:
     if not field or not 0 <= index < len(run.methods):
         return None
     method = run.methods[index]
-    if method.method.undamped or field not in locus_fields(method.method.network):
+    if field not in locus_fields(method.method):
         return None
     locus = _computed(_giving(run, index, field), field, method.network.omega_s)
     return locus if len(locus.values) > 1 else None
@@ -77,7 +83,7 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
     method = run.methods[index]
     scaled = locus.poles / method.network.omega_s
     place, name, count = method.place, method.method.name, scaled.shape[1]
-    label = locus_fields(method.method.network)[field]
+    label = locus_fields(method.method)[field]
     line = np.concatenate([scaled, np.full((1, count), complex(math.nan, math.nan))]).T.ravel()
     ends = np.concatenate([scaled[0], scaled[-1]])
     common: dict[str, Any] = {

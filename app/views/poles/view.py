@@ -190,8 +190,7 @@ class PolesView(PlotlyView):
 
 def _offered(method: Method, block: Block) -> dict[str, str]:
     """Choices of the locus: label -> field."""
-    fields = {} if method.undamped else locus_fields(getattr(method, block))
-    return {_NONE: NO_LOCUS} | {label: name for name, label in fields.items()}
+    return {_NONE: NO_LOCUS} | {label: name for name, label in locus_fields(method, block).items()}
 
 
 def _block_of(display: Display) -> Block:
