@@ -5,6 +5,8 @@ import re
 import pytest
 
 from navcore.design.designs import designs
+from navcore.design.vary import tunable_fields
+from navcore.scenario.file import load
 from navcore.study.robust_tune import TunedOver
 from schuler_bench.jobs.designer import FrontsTask, LimitsTask
 from schuler_bench.shell.places import OVER, PLACES
@@ -13,7 +15,7 @@ from schuler_bench.views.design.view import FIND as FIND_DESIGNS
 from schuler_bench.views.design.view import STOP as STOP_DESIGNS
 from schuler_bench.views.tune import finder
 from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
-from schuler_bench.views.tune.view import SEARCH_FOR
+from schuler_bench.views.tune.view import SEARCH_FOR, TuneView
 from tests.browser.cases import SWEEP
 from tests.browser.driver import Bench
 from tests.limits import require
@@ -69,6 +71,18 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
     moving.button(DISCARD).click()
     page.locator(".sb-proposal").wait_for(state="hidden")
     assert session.scenario == before
+
+
+def test_curves_of_another_network_than_the_choosers_are_not_asked_for(
+    moving: Bench,
+) -> None:
+    """The picture of a new scenario is made before the chooser follows: Tune failed for a moment."""
+    moving.tab("Tune")
+    tune = next(view for view in moving._pages[0]._views if isinstance(view, TuneView))
+    asked, other = tune._setting.task(moving.session.scenario), load("zha-fast")
+    assert asked is not None and asked.vary == ("method.2.network.zeta", "method.2.network.eta")
+    task = tune._setting.task(other)
+    assert task is None or set(task.vary) <= set(tunable_fields(other, 2))
 
 
 def test_a_design_is_taken_from_the_table(moving: Bench) -> None:

@@ -142,8 +142,13 @@ class SettingPanel:
             self._vary.value = ALL
 
     def task(self, scenario: Scenario, *, limited: bool = True) -> TuningTask | None:
-        """Task of what is chosen; None where no parameter acts."""
-        fields, display = self._fields.get(self._vary.value, ()), self.session.display
+        """Task of what is chosen; None where no parameter acts.
+
+        A picture may be of another scenario than the chooser, which follows later.
+        """
+        selected, display = self.session.selected, self.session.display
+        offered = tunable_fields(scenario, selected) if selected < len(scenario.method) else ()
+        fields = tuple(field for field in self._fields.get(self._vary.value, ()) if field in offered)
         limits = requirements_as_text(scenario.requirement) if limited else ()
         kept = limited and display.default_limits
         whole = display.beyond_sliders
