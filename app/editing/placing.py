@@ -104,6 +104,11 @@ def _network(method: Method, block: Block) -> NetworkParameters:
     return getattr(method, block)
 
 
+def _set_by_policy(method: Method, block: Block) -> str:
+    """Why the method's policy leaves nothing to place; empty where it leaves the network as it is."""
+    return network_not_in_force(method) if block == "network" else ""
+
+
 def with_pair(
     scenario: Scenario,
     index: int,
@@ -139,7 +144,7 @@ def with_pair(
             name=method.name,
         )
         raise InputError(Fault("", f"method.{index}.damping", method.damping, allowed))
-    if block == "network" and (reason := network_not_in_force(method)):
+    if reason := _set_by_policy(method, block):
         raise InputError(Fault("", f"method.{index}.network", method.network.id, reason))
     omega_s, sign = unit_frequency(scenario, block), SIGNS[block]
     wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} {sign}"
@@ -236,7 +241,7 @@ def with_nearest_pair(
 def main_pair(scenario: Scenario, index: int, block: Block = "network") -> MainPair | None:
     """Pair of a method that can be placed, as it is; None where there is none."""
     method = scenario.method[index]
-    if method.undamped or (block == "network" and network_not_in_force(method)):
+    if method.undamped or _set_by_policy(method, block):
         return None
     return _network(method, block).main_pair(unit_frequency(scenario, block))
 
@@ -251,10 +256,9 @@ def handle_of(scenario: Scenario, index: int, block: Block = "network") -> dict[
     method, pair = scenario.method[index], main_pair(scenario, index, block)
     omega_s = unit_frequency(scenario, block)
     if pair is None:
-        set_so = network_not_in_force(method) if block == "network" else ""
-        reason = set_so or _network(method, block).no_handle
-        if method.undamped:
-            reason = Text("it runs without its network")
+        reason = Text("it runs without its network")
+        if not method.undamped:
+            reason = _set_by_policy(method, block) or _network(method, block).no_handle
         return {"told": Text("No handle for {name}: {reason}.", name=method.name, reason=reason)}
     return {
         "method": index,

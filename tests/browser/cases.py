@@ -15,6 +15,6 @@ SWEEP = [
 """The same for a test that runs in all of them: always in the smallest, in the one in the middle at night."""
 
 
-def first_of(cases: Iterable[Any], marks: pytest.MarkDecorator = pytest.mark.slow) -> list[Any]:
-    """Cases of a test, of which all but the first have a mark."""
-    return [pytest.param(case, marks=marks) if place else case for place, case in enumerate(cases)]
+def first_of(cases: Iterable[Any]) -> list[Any]:
+    """Cases of a test, of which all but the first are slow."""
+    return [pytest.param(case, marks=pytest.mark.slow if n else ()) for n, case in enumerate(cases)]
