@@ -42,7 +42,7 @@ help:
 	@echo 'make tour     film the README pictures in Chromium: docs/tour.webp, docs/dashboard.png'
 	@echo 'make format   lay the code out'
 	@echo 'make languages  collect the texts of the page, and compile their translations'
-	@echo 'make guide    write docs/scenario.md, docs/networks.md and the JSON Schema anew from the parameter models'
+	@echo 'make guide    write docs/scenario.md, docs/networks.md, the questions of docs/interface.md and the JSON Schema anew'
 	@echo 'make sbom     write build/sbom.json (CycloneDX) from the lock: what an installation holds; needs no network'
 	@echo 'make audit    look the locked packages up among the published vulnerabilities; needs the network'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
@@ -188,6 +188,7 @@ guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario.guide
 	@$(BIN)/python -m navcore.scenario.schema_file
 	@$(BIN)/python -m navcore.analysis.network_table
+	@$(BIN)/python -m navcore.questions.page
 
 sbom: $(STAMPS)/supply
 	@$(BIN)/python -m tools.supply sbom

@@ -13,7 +13,6 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.scenario.model import Scenario
-from schuler_bench.cli.design_text import budget_text
 from schuler_bench.cli.run_text import run_text
 from schuler_bench.plots.plotly_data import Packed, PlotlyFigure
 from schuler_bench.plots.saved import time_figure
@@ -79,11 +78,6 @@ def budget_bars(budget: Budget) -> Figure:
 def run_tables(run: Run) -> str:
     """Write the tables of ``schuler run`` as HTML."""
     return _as_html(run_text(run))
-
-
-def budget_tables(budget: Budget) -> str:
-    """Write the tables of ``schuler budget`` as HTML."""
-    return _as_html(budget_text(budget))
 
 
 def _as_html(lines: list[str]) -> str:

@@ -73,7 +73,6 @@ _HOME = {
     "Pareto": "design.pareto",
     "Tuned": "design.tune",
     "Designs": "design.designs",
-    "budget": "design.budget",
     "designs": "design.designs",
     "pareto": "design.pareto",
     "tune": "design.tune",
@@ -95,8 +94,13 @@ _HOME = {
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: the package itself must load in no time."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'navcore' has no attribute {name!r}")
-    from importlib import import_module
+    if name in _HOME:
+        from importlib import import_module
 
-    return getattr(import_module(f"navcore.{_HOME[name]}"), name)
+        return getattr(import_module(f"navcore.{_HOME[name]}"), name)
+    if not name.startswith("_"):
+        from navcore.questions.functions import FUNCTIONS
+
+        if name in FUNCTIONS:
+            return FUNCTIONS[name]
+    raise AttributeError(f"module 'navcore' has no attribute {name!r}")

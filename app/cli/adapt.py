@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from schuler_bench.cli.table import columns, number
+from navcore.foundation.answers import columns, number
 from schuler_bench.cli.terminal import emit_result, say
 
 if TYPE_CHECKING:

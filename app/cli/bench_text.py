@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from schuler_bench.cli.table import columns, number
+from navcore.foundation.answers import columns, number
 
 _ROWS = {
     "error_model_24h_ms_per_method": ("error model, 24 h at 1 s: a method, noise included", "ms", "20"),

@@ -4,81 +4,17 @@ from collections.abc import Sequence
 
 from navcore.analysis.whole_system import duration
 from navcore.design.confirm import Confirmed
-from navcore.design.figures import Figures
 from navcore.design.measures import in_display_unit
 from navcore.design.pareto import Pareto
-from navcore.design.result import Budget
 from navcore.design.tune import Tuned
-from navcore.quantities import TILT, TUNED, VELOCITY, Kind, budgeted
+from navcore.foundation.answers import columns, number
+from navcore.quantities import TUNED
 from navcore.study.robust_tune import TunedOver
-from schuler_bench.cli.table import columns, number
-
-
-def budget_text(budget: Budget) -> list[str]:
-    """Lines: for each method its sources, their sum, and how many times the floor that is."""
-    lines = [
-        "one level channel at rest, steady state, standard deviations"
-        if budget.steady
-        else "along the scenario, root mean square over the run",
-        "",
-        *_floor(budget),
-    ]
-    for method in budget.methods:
-        rows = [_head(budget, method.name), _units(budget)]
-        rows += [[f"  {name}", *_cells(budget, entry.rms)] for name, entry in method.sources.items()]
-        if method.random is not None:
-            rows.append(["  all that is random", *_cells(budget, method.random)])
-        rows.append(["  all", *_cells(budget, method.total.rms)])
-        times = budget.times_floor(method)
-        if any(value is not None for value in times.values()):
-            rows.append(["  times the floor", *(number(value, 3) for value in times.values())])
-        if method.total.final is not None:
-            rows.append(["  at the end", *_cells(budget, method.total.final)])
-        lines += ["", *columns(rows)]
-        lines += [
-            f"  {name}: grows to {_cell(entry.growth, TILT)} {TILT.unit}, "
-            f"{_cell(entry.growth, VELOCITY)} {VELOCITY.unit} in one hour, with the square root of time"
-            for name, entry in method.sources.items()
-            if entry.growth is not None
-        ]
-        lines += [f"warning: {method.name}: {text}" for text in method.warnings]
-    return [*lines, *unstated(budget.assumed_zero)]
 
 
 def unstated(fields: Sequence[str]) -> list[str]:
     """Note on what is assumed of constants that the scenario does not state."""
     return [f"note: 0 is assumed for {', '.join(fields)}"] if fields else []
-
-
-def _floor(budget: Budget) -> list[str]:
-    if budget.floor_reason:
-        return [f"no floor: {budget.floor_reason}"]
-    rows = [
-        _head(budget, "floor"),
-        _units(budget),
-        ["  any causal linear damping with the log", *_cells(budget, budget.floor.rms)],
-    ]
-    if budget.floor.final is not None:
-        rows.append(["  at the end", *_cells(budget, budget.floor.final)])
-    lines = columns(rows)
-    return [*lines, f"note: {budget.floor_note}"] if budget.floor_note else lines
-
-
-def _head(budget: Budget, name: str) -> list[str]:
-    return [name, *(kind.name for kind in budgeted(budget.steady))]
-
-
-def _units(budget: Budget) -> list[str]:
-    return ["", *(kind.unit for kind in budgeted(budget.steady))]
-
-
-def _cells(budget: Budget, figures: Figures) -> list[str]:
-    return [_cell(figures, kind) for kind in budgeted(budget.steady)]
-
-
-def _cell(figures: Figures, kind: Kind) -> str:
-    value = getattr(figures, kind.figure)
-    return number(None if value is None else value / kind.size)
 
 
 def tune_text(objective: str, tuned: Tuned) -> list[str]:

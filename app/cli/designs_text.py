@@ -3,9 +3,9 @@
 from navcore.design.designs import Designs
 from navcore.design.needed import MOST
 from navcore.design.shares import Share
+from navcore.foundation.answers import columns, number
 from navcore.study.robust import Robust
 from schuler_bench.cli.design_text import unstated
-from schuler_bench.cli.table import columns, number
 
 
 def designs_text(designs: Designs) -> list[str]:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from tyro.conf import Positional, arg
 
-from schuler_bench.cli.table import columns, number
+from navcore.foundation.answers import columns, number
 from schuler_bench.cli.terminal import emit_result
 
 

@@ -9,9 +9,10 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions import QUESTIONS
 from schuler_bench.cli.adapt import AdaptCommand
+from schuler_bench.cli.asking import command_of
 from schuler_bench.cli.bench import BenchCommand
-from schuler_bench.cli.budget import BudgetCommand
 from schuler_bench.cli.check import CheckCommand
 from schuler_bench.cli.design import DesignCommand
 from schuler_bench.cli.network import NetworkCommand
@@ -34,7 +35,7 @@ _COMMANDS = {
     "network": NetworkCommand,
     "presets": PresetsCommand,
     "check": CheckCommand,
-    "budget": BudgetCommand,
+    "budget": command_of(QUESTIONS["budget"]),
     "tune": TuneCommand,
     "pareto": ParetoCommand,
     "adapt": AdaptCommand,

@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from navcore.analysis.whole_system import duration
+from navcore.foundation.answers import columns, number
 from navcore.quantities import ERRORS, POSITION, components
-from schuler_bench.cli.table import columns, number
 
 if TYPE_CHECKING:
     from navcore.engine.run import LawInForce, MethodRun, Run

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from schuler_bench.cli.table import columns, number
+from navcore.foundation.answers import columns, number
 
 
 def study_text(document: dict[str, Any]) -> list[str]:

@@ -16,7 +16,6 @@ from schuler_bench.jobs.refusals import refusals
 from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:
-    from navcore.design.budget import Budget
     from navcore.design.designs import Designs
     from navcore.design.pareto import Pareto
     from navcore.design.profile import Profile
@@ -114,17 +113,6 @@ class FrontsTask:
         return self.scenario.model_copy(update={"method": (same,)}) == scenario.model_copy(
             update={"method": (other,)}
         )
-
-
-class Budgeter(Search[Scenario, "Budget"]):
-    """Computes the error budget along one scenario's run at a time; ``tell`` and ``name`` as of `Search`."""
-
-    def __init__(self, tell: Callable[[], None], name: str = "budgeter") -> None:
-        super().__init__(tell, _budget, stopped=Text("Stopped: no budget."), name=name)
-
-    def beside(self, scenario: Scenario) -> Budget | None:
-        """Budget of exactly this scenario; None when there is none."""
-        return self.result if self.asked == scenario else None
 
 
 class Designer(Search[TuningTask, "Tuned"]):
@@ -242,12 +230,6 @@ def _designs(task: LimitsTask, progress: Progress, cancelled: Cancelled) -> Desi
     from navcore.study.robust import robust_designs
 
     return robust_designs(task.scenario, task.study, progress=progress, cancelled=cancelled)
-
-
-def _budget(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Budget:
-    from navcore.design.budget import budget
-
-    return budget(scenario, progress=progress, cancelled=cancelled)
 
 
 def _tune(task: TuningTask, progress: Progress, cancelled: Cancelled) -> Tuned:

@@ -1,8 +1,11 @@
 """Why a search has no proposal: boxes and names of the page in place of options and keys."""
 
+from collections.abc import Mapping
+
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from navcore.questions.base import Question, flag_of
 from schuler_bench.jobs.words import for_a_page
 from schuler_bench.plots.limits import amount, requirement_words
 
@@ -10,17 +13,18 @@ OBJECTIVE, VARY = Text("tune for"), Text("what may vary")
 _BOXES = {"--objective": OBJECTIVE, "--vary": VARY}
 
 
-def refusals(error: InputError) -> tuple[str, ...]:
-    """One sentence a fault."""
-    return tuple(_sentence(fault) for fault in for_a_page(error).faults)
+def refusals(error: InputError, question: type[Question] | None = None) -> tuple[str, ...]:
+    """One sentence a fault; a field of the question is named as the box in which the page shows it."""
+    boxes = _BOXES if question is None else {flag_of(one.name): one.label for one in question.options()}
+    return tuple(_sentence(fault, boxes) for fault in for_a_page(error).faults)
 
 
-def _sentence(fault: Fault) -> str:
+def _sentence(fault: Fault, boxes: Mapping[str, str]) -> str:
     reason = spoken(fault.allowed)
     if fault.field == "--require":
         limit = requirement_words(str(fault.value))
         return Text("Limit {limit}: {reason}.", limit=limit, reason=reason)
-    box = _BOXES.get(fault.field)
+    box = boxes.get(fault.field)
     return str(fault) if box is None else Text("Box “{box}”: {reason}.", box=box, reason=reason)
 
 

@@ -5,7 +5,9 @@ import threading
 from collections.abc import Callable
 
 from navcore.engine.run import Run
-from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Profiles, Tuner
+from navcore.questions import QUESTIONS
+from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.designer import Designer, Fronts, Limits, Profiles, Tuner
 from schuler_bench.jobs.judge import Judge
 from schuler_bench.jobs.studier import Studier
 from schuler_bench.jobs.sweeper import Sweeper
@@ -28,8 +30,8 @@ class Searches:
         What dominates the run.
     tuner : Tuner
         Sun's double loop.
-    budgeter : Budgeter
-        Error budget along the run.
+    asking : dict of Asker
+        By the name of the question that it asks.
     designer : Designer
         Best setting of a method.
     profiles : Profiles
@@ -51,7 +53,7 @@ class Searches:
         self._watchers: list[Callable[[], None]] = []
         self.explainer = Explainer(self._tell, name)
         self.tuner = Tuner(self._tell, name)
-        self.budgeter = Budgeter(self._tell, name)
+        self.asking = {id: Asker(self._tell, question, name) for id, question in QUESTIONS.items()}
         self.designer = Designer(self._tell, name)
         self.profiles = Profiles(self._tell, name)
         self.fronts = Fronts(self._tell, name)
@@ -62,7 +64,7 @@ class Searches:
         self._all = (
             self.explainer,
             self.tuner,
-            self.budgeter,
+            *self.asking.values(),
             self.designer,
             self.profiles,
             self.fronts,

@@ -1,14 +1,15 @@
 """Error budgets: every method by source, and the floor."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from navcore.design.figures import Entry, Figures, Series
 from navcore.design.floor import FLOOR_OF_ZERO
+from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.drawing import drawn
 from navcore.foundation.text import Text
-from navcore.quantities import budgeted
+from navcore.quantities import TILT, VELOCITY, Kind, budgeted
 
 WITHOUT_LOG = Text("no method uses the log: the floor is that of damping with the log")
 Shown = Literal["steady", "covariance", "seeds", "none"]
@@ -82,7 +83,7 @@ class MethodBudget:
 
 
 @dataclass(frozen=True)
-class Budget:
+class Budget(Answer):
     """Budget of a scenario.
 
     Attributes
@@ -113,11 +114,12 @@ class Budget:
         over = Text("steady state") if self.steady else Text("along the scenario")
         return f"<Budget, {over}; {', '.join(repr(method.name) for method in self.methods)}>"
 
-    def _repr_html_(self) -> str:
-        """Tables of ``schuler budget``, for a notebook."""
-        return drawn("budget_tables", self)
+    @property
+    def failed(self) -> bool:
+        """Whether a method diverges."""
+        return any(method.diverged for method in self.methods)
 
-    def as_dict(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         """Return the document of interface.md."""
         floor = self.floor.as_dict()
         if self.floor_note:
@@ -130,6 +132,60 @@ class Budget:
                 {**method.as_dict(), "times_floor": self.times_floor(method)} for method in self.methods
             ],
         }
+
+    def rows(self) -> Iterator[Table | str]:
+        """Give the floor, and for each method its sources, their sum, and that over the floor."""
+        yield (
+            Text("one level channel at rest, steady state, standard deviations")
+            if self.steady
+            else Text("along the scenario, root mean square over the run")
+        )
+        yield from self._floor()
+        for method in self.methods:
+            yield self._sources(method)
+            for name, entry in method.sources.items():
+                if entry.growth is not None:
+                    yield Text(
+                        "  {name}: grows to {tilt} {tilt_unit}, {velocity} {velocity_unit} in one hour, "
+                        "with the square root of time",
+                        name=name,
+                        tilt=number(_shown(entry.growth, TILT)),
+                        tilt_unit=TILT.unit,
+                        velocity=number(_shown(entry.growth, VELOCITY)),
+                        velocity_unit=VELOCITY.unit,
+                    )
+            for text in method.warnings:
+                yield Text("warning: {name}: {text}", name=method.name, text=text)
+
+    def _floor(self) -> Iterator[Table | str]:
+        if self.floor_reason:
+            yield ""
+            yield Text("no floor: {reason}", reason=self.floor_reason)
+            return
+        rows = [self._row(Text("  any causal linear damping with the log"), self.floor.rms)]
+        if self.floor.final is not None:
+            rows.append(self._row(Text("  at the end"), self.floor.final))
+        yield Table(self._columns(Text("floor")), tuple(rows))
+        if self.floor_note:
+            yield Text("note: {text}", text=self.floor_note)
+
+    def _sources(self, method: MethodBudget) -> Table:
+        rows = [self._row(f"  {name}", entry.rms) for name, entry in method.sources.items()]
+        if method.random is not None:
+            rows.append(self._row(Text("  all that is random"), method.random))
+        rows.append(self._row(Text("  all"), method.total.rms))
+        times = self.times_floor(method)
+        if any(value is not None for value in times.values()):
+            rows.append((Text("  times the floor"), *(number(value, 3) for value in times.values())))
+        if method.total.final is not None:
+            rows.append(self._row(Text("  at the end"), method.total.final))
+        return Table(self._columns(method.name), tuple(rows))
+
+    def _columns(self, name: str) -> tuple[Column, ...]:
+        return Column(name), *(Column(kind.name, kind.unit) for kind in budgeted(self.steady))
+
+    def _row(self, name: str, figures: Figures) -> tuple[str | float | None, ...]:
+        return name, *(_shown(figures, kind) for kind in budgeted(self.steady))
 
     def figure(self) -> Any:
         """Draw the bars of the tab Design, for a notebook, as `plotly.graph_objects.Figure`."""
@@ -151,6 +207,11 @@ class Budget:
             own, least = getattr(figures, kind.figure), getattr(self.floor.rms, kind.figure)
             ratios[kind.name] = own / least if method.reads_log and own is not None and least else None
         return ratios
+
+
+def _shown(figures: Figures, kind: Kind) -> float | None:
+    value = getattr(figures, kind.figure)
+    return None if value is None else value / kind.size
 
 
 def with_floor(

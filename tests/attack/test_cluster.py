@@ -16,13 +16,14 @@ import pytest
 from navcore.design.budget import budget
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions.budget import BudgetQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.bench.process import Server, environment, free_port
 from schuler_bench.jobs import cluster as module
 from schuler_bench.jobs import envelopes
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.cluster import Cluster
-from schuler_bench.jobs.designer import Budgeter
 from schuler_bench.jobs.elsewhere import CLUSTER, LOST, cluster, note_of, use_cluster
 from schuler_bench.jobs.envelopes import Envelopes
 from schuler_bench.jobs.load import heavy_load
@@ -126,12 +127,12 @@ def refused(text: str, progress: Callable[[float], None], cancelled: Callable[[]
 def test_a_heavy_job_is_done_there_with_the_same_result(there: Cluster, scenario: Scenario) -> None:
     assert heavy_load(scenario).lane is Lane.CLUSTER
     lanes: list[float] = []
-    budgeter = Budgeter(lambda: lanes.append(scheduler().figures()["running_cluster"]))
-    budgeter.begin(scenario)
+    budgeter = Asker(lambda: lanes.append(scheduler().figures()["running_cluster"]), BudgetQuestion)
+    budgeter.begin(BudgetQuestion(scenario=scenario))
     assert budgeter.wait_idle(120.0)
     assert budgeter.words == () and 1.0 in lanes
     found, here = budgeter.result, budget(scenario)
-    assert found is not None and found.as_dict() == here.as_dict()
+    assert found is not None and found.document() == here.document()
     budgeter.stop()
 
 
@@ -257,9 +258,9 @@ def test_a_worker_with_another_program_is_passed_over_and_named(
         assert load.lane is Lane.SPARE and load.note.startswith(
             f"No worker of the Dask cluster fits: {change} "
         )
-        budgeter = Budgeter(lambda: told.append(budgeter.words))
+        budgeter = Asker(lambda: told.append(budgeter.words), BudgetQuestion)
         told: list[tuple[str, ...]] = []
-        budgeter.begin(scenario)
+        budgeter.begin(BudgetQuestion(scenario=scenario))
         assert budgeter.wait_idle(120.0) and budgeter.result is not None
         assert (load.note,) in told and budgeter.words == ()
         budgeter.stop()

@@ -255,7 +255,7 @@ def test_an_unstable_loop_has_no_budget() -> None:
     found = budget(scenario(run=long, method=[stable, unstable]))
     assert [method.diverged for method in found.methods] == [False, True]
     assert found.methods[1].total.rms.tilt_rad is None and "unstable" in found.methods[1].warnings[0]
-    assert found.methods[0].total.rms.tilt_rad and found.as_dict()["methods"][1]["status"] == "diverged"
+    assert found.methods[0].total.rms.tilt_rad and found.document()["methods"][1]["status"] == "diverged"
 
 
 @pytest.mark.parametrize("steady", [True, False])

@@ -153,7 +153,7 @@ def test_unstated_spreads_are_named() -> None:
 def test_budget_and_tuning_name_unstated_spreads_too(capsys: pytest.CaptureFixture[str]) -> None:
     """The steady state knows no initial error."""
     damped = ship(method=SHIP["method"][:1])
-    assert budget(damped).as_dict()["assumed_zero"] == list(assumed_zero(damped))
+    assert budget(damped).document()["assumed_zero"] == list(assumed_zero(damped))
     assert budget(damped, steady=True).assumed_zero == ("reference.bias_std_mps",)
     compass = ship(method=[{"damping": "external", "network": {"id": "complementary"}}])
     found = tune(compass, "tilt_rms", ["method.0.network.zeta=0.3:1"])

@@ -12,9 +12,11 @@ from navcore.design.vary import tunable_fields
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
+from navcore.questions.budget import BudgetQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.designer import Budgeter, Designer, TuningTask
+from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.designer import Designer, TuningTask
 from schuler_bench.jobs.refusals import refusals
 from schuler_bench.plots.budgets import steady_budget
 from schuler_bench.views.design.figure import NOTHING, budget_figure, parts
@@ -157,14 +159,15 @@ def test_the_start_cards_network_keeps_its_damping():
 
 def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
     told: list[int] = []
-    designer, budgeter = Designer(lambda: told.append(1)), Budgeter(lambda: told.append(1))
+    designer, budgeter = Designer(lambda: told.append(1)), Asker(lambda: told.append(1), BudgetQuestion)
     try:
         task = TuningTask(compass, "tilt_rms", ("method.0.network.xi",), ())
         designer.begin(task)
-        budgeter.begin(compass)
+        budgeter.begin(BudgetQuestion(scenario=compass))
         assert designer.wait_idle(60.0) and budgeter.wait_idle(60.0)
         assert designer.result is not None and designer.asked == task
-        assert budgeter.beside(compass) is not None and budgeter.beside(load("zha-fast")) is None
+        assert budgeter.beside(BudgetQuestion(scenario=compass)) is not None
+        assert budgeter.beside(BudgetQuestion(scenario=load("zha-fast"))) is None
         designer.discard()
         assert designer.result is None and told
     finally:
@@ -174,7 +177,7 @@ def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
 
 def test_the_kept_steady_budget_is_that_of_the_whole_scenario(ship):
     kept, whole = steady_budget(ship), budget(ship, steady=True)
-    assert kept.as_dict() == whole.as_dict()
+    assert kept.document() == whole.document()
 
 
 def test_the_legend_has_room_for_its_rows_in_a_narrow_window(ship):

@@ -16,10 +16,12 @@ from navcore.design.sun import TuningSettings
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions.budget import BudgetQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs import helper
-from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, FrontsTask, TableTask, Tuner, TuningTask
+from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.designer import Designer, Fronts, FrontsTask, TableTask, Tuner, TuningTask
 from schuler_bench.jobs.envelopes import Envelopes
 from schuler_bench.jobs.long_runs import run_for
 from schuler_bench.jobs.scheduler import Lane, Scheduler
@@ -168,8 +170,8 @@ def begun(name: str) -> Search[Any, Any]:
         search = Designer(lambda: None)
         search.begin(TuningTask(SCENARIO, "tilt_rms", ("method.2.network.zeta",), ()))
     elif name == "budget":
-        search = Budgeter(lambda: None)
-        search.begin(SCENARIO)
+        search = Asker(lambda: None, BudgetQuestion)
+        search.begin(BudgetQuestion(scenario=SCENARIO))
     elif name == "verification":
         search = Verifier(lambda: None)
         search.begin(SCENARIO)

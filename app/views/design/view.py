@@ -6,6 +6,7 @@ from navcore.design.budget import Budget
 from navcore.design.shares import Share
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from navcore.questions.budget import BudgetQuestion
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
 from schuler_bench.jobs.designer import LimitsTask
@@ -50,7 +51,7 @@ class DesignView(PlotlyView):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._budgeter = frame.session.searches.budgeter
+        self._budgeter = frame.session.searches.asking["budget"]
         searches = frame.session.searches
         self._judge, self._limits = searches.judge, searches.limits
         self._drawn: Budget | None = None
@@ -109,7 +110,7 @@ class DesignView(PlotlyView):
             new = known != self._known
             self._known = known
             return new
-        result = None if run is None else self._budgeter.beside(run.scenario)
+        result = None if run is None else self._budgeter.beside(BudgetQuestion(scenario=run.scenario))
         if result is None or result is self._drawn or self.session.display.budget != "run":
             return False
         self._drawn = result
@@ -119,7 +120,11 @@ class DesignView(PlotlyView):
         """Stacked bars."""
         del both
         scenario, note = found.run.scenario, ""
-        budget = self._budgeter.beside(scenario) if found.display.budget == "run" else None
+        budget = (
+            self._budgeter.beside(BudgetQuestion(scenario=scenario))
+            if found.display.budget == "run"
+            else None
+        )
         if budget is None:
             budget = steady_budget(scenario)
             if found.display.budget == "run":
@@ -179,10 +184,10 @@ class DesignView(PlotlyView):
                 session.change(changed, None, name=name, selected=at)
 
     def _ask(self, scenario: Scenario) -> None:
-        if self.session.display.budget != "run" or self._budgeter.beside(scenario) is not None:
-            return
-        if self._budgeter.under_way != scenario:
-            self._budgeter.begin(scenario)
+        if self.session.display.budget == "run":
+            asked = BudgetQuestion(scenario=scenario)
+            if asked not in (self._budgeter.asked, self._budgeter.under_way):
+                self._budgeter.begin(asked)
 
 
 def _as_table(display: Display, scenario: Scenario) -> bool:

@@ -1,0 +1,104 @@
+"""Commands that ask a question: made from its fields, with the same options, faults and exit codes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, make_dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from tyro.conf import Positional, UseAppendAction, arg
+
+from navcore.foundation.answers import Answer
+from navcore.questions.base import Option, Question
+from schuler_bench.cli.terminal import emit_result, say
+
+_SET = "Override one field of the scenario first, e.g. method.0.network.xi=0.5."
+_OUT = {"file": "File for {what}.", "folder": "Folder for {what}."}
+_METAVARS = {"file": "FILE", "folder": "DIR"}
+
+
+@dataclass(frozen=True)
+class AskingCommand:
+    """Ask a question and print its answer."""
+
+    asked: ClassVar[type[Question]]
+
+    def execute(self) -> int:
+        """Answer and print; 3 when it was stopped, or a method diverged."""
+        given: Mapping[str, Any] = vars(self)
+        out: Path | None = given.get("out")
+        if out is not None:
+            self.asked.require_free(out)
+        question = self.asked.ask(self._fields(given))
+        answer = self._answered(question, given)
+        if out is not None:
+            question.write(answer, out)
+        emit_result(given["json"], answer.document(), answer.lines)
+        if not answer.complete:
+            say(f"{self._source(given)}: stopped; {answer.so_far}")
+        return 3 if answer.failed or not answer.complete else 0
+
+    def _answered(self, question: Question, given: Mapping[str, Any]) -> Answer:
+        from schuler_bench.cli.progress import working
+
+        with working(self.asked.title.lower(), given["quiet"], self._source(given)) as (progress, stopped):
+            return question.answer(progress, stopped)
+
+    def _source(self, given: Mapping[str, Any]) -> str:
+        return str(given[self.asked.subject])
+
+    def _fields(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Values of the question's fields: those that are not given keep their defaults."""
+        from navcore.scenario.file import load
+
+        fields = {one.name: given[one.name] for one in self.asked.options() if given[one.name] is not None}
+        subject = given[self.asked.subject]
+        return fields | {self.asked.subject: load(subject, given["set"]) if "set" in given else subject}
+
+
+def command_of(question: type[Question]) -> type[AskingCommand]:
+    """Make the command of a question: a dataclass from which tyro reads a command line."""
+    subject = question.model_fields[question.subject]
+    metavar = question.subject.upper()
+    rows: list[tuple[str, Any, Any]] = [
+        (question.subject, Annotated[Positional[str], arg(metavar=metavar, help=subject.description)], ...)
+    ]
+    rows += [(one.name, _annotation(one), _default(one)) for one in question.options()]
+    if question.subject == "scenario":
+        rows.append(("set", UseAppendAction[_with(tuple[str, ...], "KEY=VALUE", _SET)], ()))
+    if question.writes:
+        words = _OUT[question.writes].format(what=question.written)
+        rows.append(("out", _with(Path | None, _METAVARS[question.writes], words), None))
+    rows.append(("json", Annotated[bool, arg(help="Print one JSON document.")], False))
+    rows.append(("quiet", Annotated[bool, arg(help="No progress bar.")], False))
+    # what has no default stands first
+    rows.sort(key=lambda row: row[2] is not ...)
+    made = make_dataclass(
+        f"{question.__name__}Command",
+        [
+            (name, kind) if default is ... else (name, kind, field(default=default))
+            for name, kind, default in rows
+        ],
+        bases=(AskingCommand,),
+        namespace={"asked": question, "__doc__": str(question.help)},
+        frozen=True,
+    )
+    return made
+
+
+def _annotation(one: Option) -> Any:
+    if one.kind == "flag":
+        return Annotated[bool, arg(help=one.help)]
+    plain: Any = {"whole": int, "number": float, "text": str}.get(one.kind) or Literal[one.choices]
+    if one.many:
+        return UseAppendAction[_with(tuple[plain, ...], one.metavar, one.help)]
+    return _with(plain | None if one.default is None else plain, one.metavar, one.help)
+
+
+def _default(one: Option) -> Any:
+    return () if one.many and one.default is not ... else one.default
+
+
+def _with(kind: Any, metavar: str, words: str) -> Any:
+    return Annotated[kind, arg(metavar=metavar, help=words)]

@@ -1,0 +1,95 @@
+"""Questions asked in the background: here, by a helper or on a cluster, one at a time."""
+
+from collections.abc import Callable
+from typing import Any
+
+from navcore.foundation.answers import Answer
+from navcore.foundation.errors import InputError
+from navcore.questions.base import Cancelled, Progress, Question
+from navcore.scenario.model import Scenario
+from schuler_bench.jobs.load import heavy_load
+from schuler_bench.jobs.refusals import refusals
+from schuler_bench.jobs.scheduler import Load
+from schuler_bench.jobs.search import Search
+
+
+class Asker(Search[Any, Any]):
+    """Asks one question at a time; the last answer stays until the next.
+
+    Parameters
+    ----------
+    tell : callable
+        As of `Search`.
+    question : type of Question
+        Whose answers these are.
+    name : str
+        Of the visitor, for the turns.
+    load : callable
+        What the scheduler needs to know, from the scenario that a question is of.
+    still_s : float
+        As of `Search`.
+
+    Attributes
+    ----------
+    accepted : Scenario or None
+        The scenario into which the answer was taken over.
+    """
+
+    def __init__(
+        self,
+        tell: Callable[[], None],
+        question: type[Question],
+        name: str = "asker",
+        *,
+        load: Callable[[Scenario], Load] = heavy_load,
+        still_s: float = 0.0,
+    ) -> None:
+        super().__init__(
+            tell,
+            answered,
+            lambda found: question.keeps or found.complete,
+            stopped=question.stopped,
+            name=name,
+            load=lambda asked: load(asked.load),
+            still_s=still_s,
+            keeps=question.keeps,
+        )
+        self.question = question
+        self.accepted: Scenario | None = None
+
+    def begin(self, asked: Question) -> None:
+        """Ask this, in place of what is under way."""
+        self.accepted = None
+        super().begin(asked)
+
+    def follow(self, asked: Question) -> None:
+        """Ask this once it has been wanted for a moment, unless its answer is there or under way."""
+        if asked not in (self.under_way, self.asked):
+            self._submit(asked, None)
+
+    def beside(self, asked: Question) -> Any:
+        """Answer to exactly this question; None where there is none."""
+        return self.result if self.asked == asked else None
+
+    def accept(self, scenario: Scenario) -> None:
+        """Note that the answer has been taken over into this scenario."""
+        self.accepted = scenario
+        self._tell()
+
+    def forget(self) -> None:
+        """Drop the answer."""
+        self.accepted = None
+        super().forget()
+
+    def discard(self) -> None:
+        """Forget the answer, and let the pages know."""
+        self.forget()
+        self._tell()
+
+    def _refused(self, error: InputError) -> tuple[str, ...]:
+        return refusals(error, self.question)
+
+
+def answered(question: Question, progress: Progress, cancelled: Cancelled) -> Answer:
+    """Answer a question; a helper and a cluster find this function by its name."""
+    return question.answer(progress, cancelled)

@@ -1,0 +1,15 @@
+"""What the bench can be asked: one class a question, one line each.
+
+Command, panel of the page, job, task of a cluster, function of a notebook and the reference page are made
+from the class.
+"""
+
+from navcore.foundation.registry import registry
+from navcore.questions.base import Question
+
+QUESTIONS: dict[str, type[Question]] = registry(
+    Question,
+    "id",
+    "navcore.questions.budget:BudgetQuestion",
+)
+"""Questions by name, in the order in which the command and the page offer them."""

@@ -1,0 +1,256 @@
+"""What the bench is asked: one frozen parameter model a question, from which everything else is made.
+
+The command, the panel of the page, the job in the background, the task of a cluster, the function of a
+notebook and the reference page take fields, ranges and help from the model. A question is one file and one
+line of `navcore.questions`.
+"""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union, get_args, get_origin
+
+from pydantic import BeforeValidator, Field, ValidationError
+from pydantic.fields import FieldInfo
+
+from navcore.foundation.answers import Answer
+from navcore.foundation.errors import Fault, InputError, StoppedError
+from navcore.foundation.faults import faults_from
+from navcore.foundation.parameters import Parameters, extra_of
+from navcore.foundation.text import Text
+
+if TYPE_CHECKING:
+    from navcore.scenario.model import Scenario
+
+Progress = Callable[[float], None]
+Cancelled = Callable[[], bool]
+Kind = Literal["flag", "whole", "number", "choice", "text"]
+Writes = Literal["", "file", "folder"]
+
+
+def _loaded(value: Any) -> Any:
+    """Scenario of a name or file; imported only now, so that a command line is read at once."""
+    from navcore.scenario.file import load
+    from navcore.scenario.model import Scenario
+
+    if isinstance(value, Scenario):
+        return value
+    if isinstance(value, str | Path):
+        return load(str(value))
+    raise InputError(Fault("", "", value, Text("must be a scenario, the name of a preset, or a TOML file")))
+
+
+if TYPE_CHECKING:
+    Asked = Scenario
+else:
+    Asked = Annotated[Any, BeforeValidator(_loaded)]
+    """Type of a field that holds a scenario: itself, the name of a preset, or a file."""
+
+
+def option(default: Any, *, label: str = "", help: str = "", metavar: str = "") -> Any:
+    """Declare a field of a question that is no number: a text, a choice, a flag, or several texts.
+
+    Parameters
+    ----------
+    default : object
+        Default value; ``...`` for none.
+    label, help : str
+        Name on the page, and what it does.
+    metavar : str
+        Stands for a value in the help of the command line.
+
+    Returns
+    -------
+    pydantic field declaration.
+    """
+    extra: dict[str, Any] = {name: text for name, text in (("label", label), ("metavar", metavar)) if text}
+    return Field(default=default, description=help or None, json_schema_extra=extra or None)
+
+
+@dataclass(frozen=True)
+class Option:
+    """One field of a question, as a command line or a signature shows it.
+
+    Attributes
+    ----------
+    name : str
+        Of the field.
+    kind : {"flag", "whole", "number", "choice", "text"}
+        What one value is.
+    default : object
+        Default value; ``...`` where one is required.
+    many : bool
+        It takes several values.
+    choices : tuple of str
+        Of a "choice".
+    help, metavar, label : str
+        As declared.
+    """
+
+    name: str
+    kind: Kind
+    default: Any
+    many: bool
+    choices: tuple[str, ...]
+    help: str
+    metavar: str
+    label: str
+
+    @property
+    def flag(self) -> str:
+        """As it is given on the command line."""
+        return flag_of(self.name if self.default is not True else f"no_{self.name}")
+
+
+def flag_of(name: str) -> str:
+    """Option of the command line for a field.
+
+    Examples
+    --------
+    >>> flag_of("default_limits")
+    '--default-limits'
+    """
+    return f"--{name.replace('_', '-')}"
+
+
+class Question(Parameters):
+    """Base of all questions.
+
+    Attributes
+    ----------
+    title : str
+        Its name on the page, and beside a progress bar.
+    help : str
+        What it gives, in one sentence.
+    function : str
+        Name of the function of `navcore` that asks it; by default that of the command.
+    subject : str
+        Name of the field that says of what it is asked.
+    takes : str
+        What that is, for the docstring of the function.
+    example : str
+        Of the function, for its docstring.
+    writes, written : str
+        What ``--out`` is ("file", "folder" or ""), and what is written there.
+    keeps : bool
+        What a stopped question has found so far is an answer.
+    stopped : str
+        What is said where it was stopped and nothing was found.
+    scenario : Scenario
+        Of what it is asked.
+    """
+
+    title: ClassVar[str] = ""
+    help: ClassVar[str] = ""
+    function: ClassVar[str] = ""
+    subject: ClassVar[str] = "scenario"
+    takes: ClassVar[str] = "Scenario, or str"
+    example: ClassVar[str] = ""
+    writes: ClassVar[Writes] = ""
+    written: ClassVar[str] = ""
+    keeps: ClassVar[bool] = True
+    stopped: ClassVar[str] = Text("Stopped: nothing was found.")
+    scenario: Asked = option(..., metavar="SCENARIO", help=Text("Name of a preset, or a TOML file."))
+
+    @classmethod
+    def ask(cls, data: Mapping[str, Any]) -> Any:
+        """Make a question of values as they were given.
+
+        Raises
+        ------
+        InputError
+            One fault a field; it is named as on the command line.
+        """
+        try:
+            return cls.model_validate(dict(data))
+        except ValidationError as error:
+            raise InputError(_faults(error, cls, dict(data))) from None
+
+    @classmethod
+    def options(cls) -> tuple[Option, ...]:
+        """Fields beside the subject, in order."""
+        return tuple(
+            _option(name, info) for name, info in cls.model_fields.items() if name not in ("id", cls.subject)
+        )
+
+    def answer(self, progress: Progress | None = None, cancelled: Cancelled | None = None) -> Answer:
+        """Answer it.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Told the fraction done, 0..1.
+        cancelled : callable, optional
+            Asked often; True ends the work.
+
+        Raises
+        ------
+        InputError
+            It cannot be answered.
+        StoppedError
+            It was stopped before there was an answer.
+        """
+        raise NotImplementedError
+
+    @property
+    def load(self) -> Scenario:
+        """Scenario whose size says what it takes, and whose files must be at hand where it is answered."""
+        return self.scenario
+
+    @classmethod
+    def require_free(cls, out: Path) -> None:
+        """Refuse a place for ``--out`` that holds what this question does not write; raises `InputError`."""
+
+    def write(self, answer: Answer, out: Path) -> None:
+        """Write what ``--out`` asks for."""
+        raise NotImplementedError
+
+
+def unless_stopped(cancelled: Cancelled | None) -> None:
+    """Raise `StoppedError` where the work was cancelled."""
+    if cancelled is not None and cancelled():
+        raise StoppedError(Fault("", "", None, Text("stopped")))
+
+
+def _faults(error: ValidationError, model: type[Question], data: dict[str, Any]) -> list[Fault]:
+    """Faults by option: those that a text has by itself keep their own names."""
+    faults: list[Fault] = []
+    for item in error.errors(include_url=False):
+        cause = (item.get("ctx") or {}).get("error")
+        if isinstance(cause, InputError):
+            faults += [
+                fault if fault.field or fault.where else replace(fault, field=flag_of(str(item["loc"][0])))
+                for fault in cause.faults
+            ]
+    if not faults:
+        for fault in faults_from(error, model, data, ""):
+            name, _, rest = fault.field.partition(".")
+            faults.append(replace(fault, field=f"{flag_of(name)}{'.' * bool(rest)}{rest}"))
+    return faults
+
+
+def _option(name: str, info: FieldInfo) -> Option:
+    annotation, many = _plain(info.annotation), False
+    if get_origin(annotation) is tuple:
+        annotation, many = _plain(get_args(annotation)[0]), True
+    choices = tuple(map(str, get_args(annotation))) if get_origin(annotation) is Literal else ()
+    kinds: dict[Any, Kind] = {bool: "flag", int: "whole", float: "number"}
+    kind: Kind = "choice" if choices else kinds.get(annotation, "text")
+    extra = extra_of(info)
+    default = ... if info.is_required() else info.default
+    metavar = extra.get("metavar") or {"whole": "N"}.get(kind, name.upper())
+    label = extra.get("label") or name.replace("_", " ")
+    return Option(name, kind, default, many, choices, info.description or "", metavar, label)
+
+
+def _plain(annotation: Any) -> Any:
+    """Annotation without `Annotated` and None."""
+    while get_origin(annotation) is Annotated:
+        annotation = get_args(annotation)[0]
+    if get_origin(annotation) in (Union, types.UnionType):
+        rest = [one for one in get_args(annotation) if one is not type(None)]
+        return _plain(rest[0]) if len(rest) == 1 else annotation
+    return annotation
