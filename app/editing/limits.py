@@ -1,13 +1,14 @@
 """Limits of a scenario as the page's boxes give them, each in the unit in which its quantity is shown."""
 
-import math
 from typing import Any
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.numbers import NotANumber
 from navcore.foundation.text import Text
 from navcore.quantities import LIMITED, QUANTITIES, limit_unit
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+from schuler_bench.editing.typed import read_typed, unit_of
 from schuler_bench.plots.limits import SIGNS
 
 BOXES = (*OF_THE_SETTING, *(key for key in LIMITED if key not in OF_THE_SETTING))
@@ -83,13 +84,12 @@ def with_begin(scenario: Scenario, text: str) -> Scenario:
 
 
 def _number(label: str, text: str) -> float:
+    """Number in a box, in the unit of its label, or with a unit of its own."""
     try:
-        value = float(text.strip().replace(",", "."))
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InputError(Fault("", label, text, Text("must be a number; leave it empty for no requirement")))
-    return value
+        return read_typed(text, unit_of(label))
+    except NotANumber as error:
+        allowed = Text("{allowed}; leave it empty for no requirement", allowed=error.allowed)
+        raise InputError(Fault("", label, text, allowed)) from None
 
 
 def _parsed(scenario: Scenario, blocks: list[Any], label: str, text: str) -> Scenario:

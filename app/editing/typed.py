@@ -1,10 +1,13 @@
-"""Text typed into a box: a number with a unit ("30 min" in hours), and lists of roots, numbers or rows."""
+"""Text typed into a box: a number with a unit ("30 min" in hours), and lists of roots, numbers or rows.
 
-import math
+Every number in them is read by `navcore.foundation.numbers`.
+"""
+
 import re
 from typing import Any
 
 from navcore.foundation.notation import unit_sign
+from navcore.foundation.numbers import MINUS, NotANumber, read_number, read_whole, unquoted
 from navcore.foundation.text import Text
 from navcore.foundation.units import (
     ARCMIN,
@@ -33,7 +36,14 @@ _SPELLED = {
     "m/s2": "m/s^2", "m/s²": "m/s^2", "µg": "ug", "μg": "ug",
     "sec": "s", "minutes": "min", "hours": "h", "days": "d",
 }  # fmt: skip
-_FORM = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
+_UNITS = sorted({*_SPELLED, *(unit for family in _FAMILIES for unit in family)}, key=len, reverse=True)
+_UNKNOWN_UNIT = re.compile(r"(.*[\d.,])\s*([^\d\s.,+-][^\d]*)", re.DOTALL)
+_HIDDEN = str.maketrans(",; \n", "\ue000\ue001\ue002\ue003")
+_SHOWN = str.maketrans("\ue000\ue001\ue002\ue003", ",; \n")
+"""Stand for what separates where it does not: within brackets."""
+_MINUS = ("-", *MINUS)
+_DECIMALS = 6
+"""Zeros behind the point up to which a small number is written without an exponent."""
 
 
 def unit_of(label: str) -> str:
@@ -48,52 +58,94 @@ def unit_of(label: str) -> str:
     return "" if match is None else match[1]
 
 
-def read_typed(text: str, unit: str) -> float:
+def read_typed(text: str, unit: str, *, whole: bool = False) -> float:
     """Value of a typed number in a field's unit.
 
     Parameters
     ----------
     text : str
-        "30 min", "2kn", "0.5"; without a unit it is in the field's.
+        "30 min", "2kn", "0,5", "2·10^-4 °/h"; without a unit it is in the field's.
     unit : str
         Of the field; empty for a plain number.
+    whole : bool
+        It must be a whole number, and is an `int`.
 
     Raises
     ------
-    ValueError
-        In words: no number, or a unit that does not fit.
+    NotANumber
+        A `ValueError` in words: no number, or a unit that does not fit.
 
     Examples
     --------
-    >>> read_typed("30 min", "h"), read_typed("2 kn", "kn"), read_typed("0.5", "")
+    >>> read_typed("30 min", "h"), read_typed("2 kn", "kn"), read_typed("0,5", "")
     (0.5, 2.0, 0.5)
     """
-    match = _FORM.fullmatch(text)
-    if match is None:
-        raise ValueError("must be a number, with a unit if wanted, such as 30 min")
-    value, given = float(match[1]), _SPELLED.get(match[2], match[2])
+    number, given = _parted(unquoted(text.strip()))
     mine = _SPELLED.get(unit, unit)
-    if not math.isfinite(value):
-        raise ValueError("must be a finite number")
     if given in ("", mine):
-        return value
+        return _read(number, text, whole=whole)
     family = next((units for units in _FAMILIES if mine in units), {mine: 1.0} if mine else {})
     if given not in family:
-        allowed = Text("takes a number without a unit")
-        if family:
-            allowed = Text("must be in one of {family}", family=", ".join(map(unit_sign, family)))
-        raise ValueError(f"{allowed}, not in {given!r}")
+        _read(number, text)  # what is no number either is refused as such
+        if not family:
+            raise NotANumber(text, Text("must be a number without a unit"))
+        units = ", ".join(map(unit_sign, family))
+        raise NotANumber(text, Text("must be in one of {units}, not in {given!r}", units=units, given=given))
     # Rounded to what a double holds safely: 30 min are 0.5 h, not 0.49999999999999994 h.
-    return float(f"{value * family[given] / family[mine]:.14g}")
+    value = f"{_read(number, text) * family[given] / family[mine]:.14g}"
+    return read_whole(value) if whole else float(value)
+
+
+def _parted(text: str) -> tuple[str, str]:
+    """Return a number and its unit, as `_FAMILIES` spells it; the unit is empty where there is none."""
+    try:
+        read_number(text)
+    except NotANumber:
+        pass
+    else:
+        return text, ""
+    for unit in _UNITS:
+        number = text.removesuffix(unit).rstrip()
+        if number != text and number[-1:].isdecimal() | (number[-1:] in "⁰¹²³⁴⁵⁶⁷⁸⁹.)}"):
+            return number, _SPELLED.get(unit, unit)
+    unknown = _UNKNOWN_UNIT.fullmatch(text)
+    return (text, "") if unknown is None else (unknown[1], unknown[2].strip())
+
+
+def _read(number: str, text: str, *, whole: bool = False) -> float:
+    """Read a number; a fault quotes the whole text."""
+    try:
+        return read_whole(number) if whole else read_number(number)
+    except NotANumber as error:
+        raise NotANumber(text, error.allowed) from None
+
+
+def write_number(value: float) -> str:
+    """Write a number into a box: with all its digits, or with 12 where a double's rounding shows.
+
+    Examples
+    --------
+    >>> [write_number(value) for value in (0.003, 5.0, 1e-5, 0.1 + 0.2, 2e-9)]
+    ['0.003', '5', '0.00001', '0.3', '2e-09']
+    """
+    if isinstance(value, int):
+        return str(value)
+    text = f"{value:.15g}"
+    if float(text) != value:
+        text = f"{value:.12g}"
+    mantissa, _, power = text.partition("e-")
+    if not power or int(power) > _DECIMALS:
+        return text
+    return f"{value:.{int(power) + len(mantissa.lstrip('-').replace('.', '')) - 1}f}"
 
 
 def read_roots(text: str) -> list[Any]:
-    """Zeros or poles as typed: numbers, complex ones as ``-0.1+0.2j``, or ``[re, im]``; separated by commas.
+    """Zeros or poles as typed: numbers, complex ones as ``-0.1+0.2j``, or ``[re, im]``; separated as a list.
 
     Raises
     ------
-    ValueError
-        A part is neither.
+    NotANumber
+        A `ValueError`: a part is neither, or it is not clear where the next one begins.
 
     Examples
     --------
@@ -101,19 +153,45 @@ def read_roots(text: str) -> list[Any]:
     ([-0.00085, [-0.1, 0.2], [-0.1, -0.2]], [[-1.0, 2.0], 3.0], [])
     """
     roots: list[Any] = []
-    for part in _parts(text):
+    for part in _items(text):
         if part.startswith("["):
-            re, im = (float(number) for number in part.removeprefix("[").removesuffix("]").split(","))
-            roots.append([re, im])
+            inside = part.removeprefix("[").removesuffix("]")
+            both = inside.split(",") if inside.count(",") == 1 else _items(inside)
+            if len(both) != 2:
+                raise NotANumber(part, Text("must be two numbers, [re, im]"))
+            roots.append([_read(number, part) for number in both])
             continue
-        root = complex(part.replace(" ", "").replace("i", "j"))
-        roots.append([root.real, root.imag] if root.imag else root.real)
+        roots.append(_root_of(part))
     return roots
 
 
+def _root_of(part: str) -> Any:
+    """Read a real or a complex root."""
+    inside = part[1:-1] if part.startswith("(") and part.endswith(")") else part
+    bare = re.sub(r"[ \t]", "", inside)
+    if bare[-1:] not in ("i", "j"):
+        return read_number(part)
+    sign = next((at for at in range(len(bare) - 2, -1, -1) if _begins(bare, at)), 0)
+    re_part, im_part = bare[:sign], bare[sign:-1]
+    im = _read(f"{im_part}1" if im_part in ("", "+", *_MINUS) else im_part, part)
+    real = _read(re_part, part) if re_part else 0.0
+    return [real, im] if im else real
+
+
+def _begins(bare: str, at: int) -> bool:
+    """Whether the imaginary part begins at a place: with a sign that is none of an exponent."""
+    return bare[at] in ("+", *_MINUS) and bare[at - 1 : at] not in ("e", "E", "^", "*", "(", "{")
+
+
 def read_numbers(text: str) -> list[float]:
-    """Coefficients as typed, separated by commas or blanks; raises ValueError."""
-    return [float(part) for part in text.replace(",", " ").split()]
+    """Coefficients as typed, separated as a list or by blanks; raises `NotANumber`.
+
+    Examples
+    --------
+    >>> read_numbers("1, 0.5"), read_numbers("1 0.5 2"), read_numbers("1; 0,5; 2")
+    ([1.0, 0.5], [1.0, 0.5, 2.0], [1.0, 0.5, 2.0])
+    """
+    return [read_number(part) for part in _items(text, blanks=True)]
 
 
 def write_roots(roots: Any) -> str:
@@ -133,17 +211,18 @@ def write_numbers(values: Any) -> str:
 
 
 def read_pairs(text: str) -> list[list[float]]:
-    """Rows of a table as typed, ``0: 0.99, 0.5: 0.12``; raises ValueError.
+    """Rows of a table as typed, ``0: 0.99, 0.5: 0.12``; raises `NotANumber`.
 
     Examples
     --------
     >>> read_pairs("0: 0.99, 0.5:0.12"), write_pairs([(0.0, 0.99), [0.5, 0.12]])
     ([[0.0, 0.99], [0.5, 0.12]], '0: 0.99, 0.5: 0.12')
     """
-    rows = [[float(number) for number in row.split(":")] for row in text.split(",") if row.strip()]
-    if any(len(row) != 2 for row in rows):
-        raise ValueError("a row is two numbers with a colon between them")
-    return rows
+    rows = [row.split(":") for row in _items(text)]
+    for row in rows:
+        if len(row) != 2:
+            raise NotANumber(":".join(row), Text("must be two numbers with a colon between them"))
+    return [[_read(number, ":".join(row)) for number in row] for row in rows]
 
 
 def write_pairs(rows: Any) -> str:
@@ -156,15 +235,37 @@ def _root(root: Any) -> str:
     return f"{re:.9g}{im:+.9g}j" if im else f"{re:.9g}"
 
 
-def _parts(text: str) -> list[str]:
-    parts, depth, current = [], 0, ""
-    for letter in text.strip():
-        depth += (letter == "[") - (letter == "]")
-        if letter in ",;" and depth == 0:
-            parts.append(current.strip())
-            current = ""
-        else:
-            current += letter
+def _items(text: str, *, blanks: bool = False) -> list[str]:
+    """Split a list, outside of its brackets: at semicolons where there are any, else at commas.
+
+    A comma between two digits may be a decimal comma: ``0,5`` is refused, as is ``1,234,567``. A comma that
+    is followed by a blank, or that stands in what can be no number (``1,2,3``), separates.
+    """
+    bare = unquoted(text.strip())
+    depth, marked = 0, ""
+    for letter in bare:  # within brackets nothing separates
+        depth += (letter in "[({") - (letter in "])}")
+        marked += letter if depth <= 0 else letter.translate(_HIDDEN)
     if depth:
-        raise ValueError("a bracket is missing")
-    return [part for part in [*parts, current.strip()] if part]
+        raise NotANumber(text, Text("has a bracket without its other one"))
+    separator = r"[;\n]" if ";" in marked else r"(?:,\s+|\s+,|,$|\n)"
+    parts = re.split(rf"{separator}|[ \t\n]+" if blanks else separator, marked)
+    items: list[str] = []
+    for part in parts:
+        row = part.count(":") == 1
+        items += [part] if ";" in marked or row or "," not in part else _at_commas(part)
+    shown = (item.translate(_SHOWN).strip() for item in items)
+    return [item for item in shown if item]
+
+
+def _at_commas(part: str) -> list[str]:
+    """Split at commas without a blank, where they can be no decimal ones."""
+    try:
+        read_number(part)
+        single = True
+    except NotANumber as error:
+        single = "may mean" in error.allowed
+    if single:
+        told = Text("may be one number or several: separate them by a semicolon, or by a comma and a blank")
+        raise NotANumber(part, told)
+    return part.split(",")

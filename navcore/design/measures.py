@@ -23,6 +23,7 @@ from navcore.engine.drivers.common import network_of
 from navcore.engine.ensemble import SEARCHED
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.numbers import NotANumber, read_number
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, UNITS
 from navcore.networks.base import LinearNetwork
@@ -163,7 +164,7 @@ def over_run(keys: Iterable[str]) -> bool:
 
 _TERM = re.compile(r"(?:(?P<weight>[0-9.]+(?:e[+-]?[0-9]+)?)\s*\*\s*)?(?P<name>[a-z][a-z0-9_]*)\Z")
 _REQUIREMENT = re.compile(
-    r"\s*(?P<name>[a-z][a-z0-9_]*)\s*(?P<sense><=|>=)\s*(?P<value>[-+0-9.eE]+?)\s*(?P<unit>[a-z/]*)\s*\Z"
+    r"\s*(?P<name>[a-z][a-z0-9_]*)\s*(?P<sense><=|>=)\s*(?P<value>\S.*?)\s*(?P<unit>[a-z/]*)\s*\Z"
 )
 
 
@@ -319,7 +320,8 @@ def read_requirement(text: str) -> Requirement:
             Fault("", "--require", text, Text("unit must be one of {same}", same=", ".join(same) or "none"))
         )
     try:
-        limit = float(match["value"]) * (UNITS[unit] if unit else 1.0)
-    except ValueError:
-        raise InputError(Fault("", "--require", text, Text("the limit must be a number"))) from None
+        limit = read_number(match["value"]) * (UNITS[unit] if unit else 1.0)
+    except NotANumber as error:
+        allowed = Text("the limit {error}", error=str(error))
+        raise InputError(Fault("", "--require", text, allowed)) from None
     return Requirement(text.strip(), match["name"], match["sense"], limit)

@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.notation import symbol
+from navcore.foundation.numbers import NotANumber, read_number
 from navcore.foundation.parameters import bounds_of, extra_of
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
@@ -210,10 +211,13 @@ def _allowed(info: FieldInfo) -> tuple[float, float]:
 def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[float, float]:
     parts = ends.split(":")
     try:
-        low, high = (float(part) for part in parts)
+        low, high = (read_number(part) for part in parts)
+    except NotANumber as error:
+        told = Text("must end in LOW:HIGH, two numbers: {error}", error=str(error))
+        raise InputError(Fault("", "--vary", text, told)) from None
     except ValueError:
         raise InputError(Fault("", "--vary", text, Text("must end in LOW:HIGH, two numbers"))) from None
-    if not (math.isfinite(low) and math.isfinite(high)) or low < allowed[0] or high > allowed[1]:
+    if low < allowed[0] or high > allowed[1]:
         reason = Text(
             "its range must lie within {allowed:g} and {allowed_2:g}",
             allowed=allowed[0],

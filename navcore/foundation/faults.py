@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from navcore.foundation.decimal_comma import comma_refused
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import allowed_range, element_of, extra_of
 from navcore.foundation.text import Text
+from navcore.foundation.written_toml import number_refused
 
 _ABSENT = object()
 _MOST_ERRORS = 100
@@ -147,7 +147,7 @@ def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> 
         wanted = Text("must be a name or a table of fields")
     if wanted is not None:
         if kind.startswith(("float", "int")):
-            wanted = comma_refused(item["input"]) or wanted
+            wanted = number_refused(item["input"]) or wanted
         return _join(wanted, _range(info))
     message = str(context["error"]) if "error" in context else item["msg"]
     return _join(message.replace(Text("Input should be"), Text("must be"), 1), _range(info))

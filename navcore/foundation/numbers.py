@@ -45,7 +45,7 @@ _FORM = re.compile(
 _WHOLE = re.compile(r"[-+]?\d+")
 _EXACT = 2.0**53
 _LONGEST = 1000
-_ALLOWED = Text("must be a number, such as -0.02, 1e-3 or 0,02")
+NO_NUMBER = Text("must be a number, such as -0.02, 1e-3 or 0,02")
 _FINITE = Text("must be a finite number")
 
 
@@ -138,21 +138,21 @@ def plain_number(text: str, decimal: str = "") -> str:
     '-1234.5e-3'
     """
     if len(text) > _LONGEST:
-        raise NotANumber(text, _ALLOWED)
+        raise NotANumber(text, NO_NUMBER)
     bare = unquoted(text.translate(_SEEN).strip()).strip().translate(_PLAIN)
     if re.fullmatch(r"(?i)[-+]?(inf(inity)?|nan|∞)", bare):
         raise NotANumber(text, _FINITE)
     ascii_only = "".join(str(unicodedata.decimal(sign, sign)) for sign in bare)
     match = _FORM.fullmatch(ascii_only)
     if match is None:
-        raise NotANumber(text, _ALLOWED)
+        raise NotANumber(text, NO_NUMBER)
     digits = match["digits"]
     small = match["small"] or match["alone"]
     power = match["exponent"] or match["raised"] or match["lonely"]
     if small is not None:
         power = "".join(_SUPERSCRIPT[sign] for sign in small)
         if not re.fullmatch(r"[-+]?\d+", power):
-            raise NotANumber(text, _ALLOWED)
+            raise NotANumber(text, NO_NUMBER)
     mantissa = "1" if digits is None else _mantissa(digits, text, decimal)
     return f"{match['sign']}{mantissa}" + (f"e{power}" if power else "")
 
@@ -189,8 +189,8 @@ def _mantissa(digits: str, text: str, decimal: str) -> str:
             both = {"point": f"{whole}.{rest}", "whole": f"{whole}{rest}"}
             raise NotANumber(text, Text("may mean {point} or {whole}: write one of these", **both))
         digits = f"{whole}.{rest}" if rest or found[0] == "." else ""
-    if not re.fullmatch(r"\d+\.?\d*|\.\d+", digits):
-        raise NotANumber(text, _ALLOWED)
+    if not re.fullmatch(r"\d++\.?\d*|\.\d+", digits):
+        raise NotANumber(text, NO_NUMBER)
     return digits
 
 
@@ -198,14 +198,14 @@ def _parted(digits: str, sign: str, other: str, text: str, decimal: str) -> str:
     """Return digits with a point, of a number with both signs; the last is its decimal sign."""
     whole, _, rest = digits.partition(sign)
     if (decimal and sign != decimal) or other in rest:
-        raise NotANumber(text, _ALLOWED)
+        raise NotANumber(text, NO_NUMBER)
     return f"{_joined(whole, other, text)}.{rest}"
 
 
 def _joined(digits: str, sign: str, text: str) -> str:
     """Return digits without the sign between their groups of three."""
     if not re.fullmatch(rf"[1-9]\d{{0,2}}(?:{re.escape(sign)}\d{{3}})+", digits):
-        raise NotANumber(text, _ALLOWED)
+        raise NotANumber(text, NO_NUMBER)
     return digits.replace(sign, "")
 
 
@@ -215,7 +215,7 @@ def _ungrouped(digits: str, text: str) -> str:
     if _GROUP in whole:
         whole = _joined(whole, _GROUP, text)
     if not re.fullmatch(rf"\d*|\d{{3}}(?:{_GROUP}\d{{3}})*(?:{_GROUP}\d{{1,3}})?", rest):
-        raise NotANumber(text, _ALLOWED)
+        raise NotANumber(text, NO_NUMBER)
     rest = rest.replace(_GROUP, "")
     # A space has grouped the digits, so that the comma does not.
     return f"{whole}.{rest}" if point else whole

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -28,6 +27,7 @@ from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import Parameters
 from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
+from navcore.foundation.written_toml import read_toml_text
 from navcore.io.column_names import QUANTITIES, Column, known_columns, plain_name
 from navcore.io.columns import listed
 from navcore.io.imu_columns import DIMENSIONS, ImuColumn, imu_column
@@ -221,8 +221,10 @@ def map_beside(path: str | os.PathLike[str]) -> Path | None:
 def parse_map(text: str, where: str) -> ColumnMap:
     """Parse the text of a map; raises `InputError` as `read_map` does."""
     try:
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as problem:
+        data = read_toml_text(text, where)
+    except InputError:
+        raise
+    except (RecursionError, ValueError) as problem:
         raise InputError(Fault(where, "", None, Text("not TOML ({problem})", problem=str(problem)))) from None
     try:
         found = ColumnMap.model_validate(data)

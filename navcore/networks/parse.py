@@ -1,15 +1,14 @@
 """A network from what a user types: ``id = "compass", sigma = 0.0088, xi = 0.7``."""
 
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from navcore.foundation.decimal_comma import refuse_comma
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
+from navcore.foundation.written_toml import mended, read_toml_text
 from navcore.networks.base import NetworkParameters
 from navcore.networks.catalogue import NETWORKS, Network
 
@@ -50,9 +49,10 @@ def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "networ
 def _table(text: str, where: str) -> dict[str, Any]:
     inside = " ".join(text.split()).strip().removeprefix("{").removesuffix("}").strip().strip(",")
     try:
-        document = tomllib.loads(f"network = {{{inside}}}")
-    except tomllib.TOMLDecodeError as error:
-        refuse_comma(inside, "", where)
+        document = read_toml_text(f"network = {{{mended(inside)}}}", where)
+    except InputError:
+        raise
+    except ValueError as error:
         reason = str(error).split(" (at line")[0]
         raise InputError(
             Fault(where, "", text, Text("{example} ({reason})", example=_EXAMPLE, reason=reason))

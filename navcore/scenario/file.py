@@ -3,17 +3,16 @@
 import difflib
 import hashlib
 import json
-import tomllib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from navcore.foundation.assets import asset_path
-from navcore.foundation.decimal_comma import refuse_comma
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.times import in_other_unit
+from navcore.foundation.written_toml import read_toml_text, read_value
 from navcore.scenario.bounds import LARGEST_BYTES, require_bounded, require_readable
 from navcore.scenario.fields import SCHEMA
 from navcore.scenario.model import Scenario
@@ -44,7 +43,7 @@ def load(source: str, overrides: Iterable[str] = ()) -> Scenario:
         Name of a preset (see `presets`), or path of a file. Names of recordings in a file are relative to it.
     overrides : iterable of str
         Fields to change, as ``KEY=VALUE`` with a dotted key: ``method.0.network.xi=0.5``. The value is read
-        as TOML and, where it is not TOML, as text.
+        as TOML, else as a number however it is written (``0,5``), and, where it is neither, as text.
 
     Returns
     -------
@@ -120,11 +119,12 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     text = text.removeprefix("\ufeff")  # the byte order mark of Windows' editors
     require_readable(text, where)
     try:
-        data = tomllib.loads(text)
+        data = read_toml_text(text, where)
+    except InputError:
+        raise
     except RecursionError:
         raise InputError(Fault(where, "", None, Text("is nested too deep: no scenario"))) from None
     except ValueError as error:  # also what the reader does not call its own
-        refuse_comma(text, str(error), where)
         raise InputError(
             Fault(where, "", None, Text("is not valid TOML: {error}", error=str(error)[:200]))
         ) from None
@@ -171,18 +171,11 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
                 Fault("--set", "", override, Text("must have the form KEY=VALUE, e.g. run.duration_h=2"))
             )
             continue
-        fault = set_field(data, key.strip(), _value(text.strip()))
+        fault = set_field(data, key.strip(), read_value(text.strip()))
         if fault:
             faults.append(Fault("--set", key.strip(), text, fault))
     if faults:
         raise InputError(faults)
-
-
-def _value(text: str) -> Any:
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        return text
 
 
 def set_field(data: Any, key: str, value: Any) -> str:

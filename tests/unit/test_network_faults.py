@@ -60,7 +60,10 @@ def lines(data: Any) -> list[str]:
     ("data", "line"),
     [
         ({"run": {"step_s": 0}}, "x.toml: run.step_s = 0: must be > 0 and <= 10 (s)"),
-        ({"run": {"step_s": "1"}}, "x.toml: run.step_s = '1': must be a number, > 0 and <= 10 (s)"),
+        (
+            {"run": {"step_s": "1"}},
+            "x.toml: run.step_s = '1': must be a number (write 1 without quotation marks), > 0 and <= 10 (s)",
+        ),
         ({"run": {"step_s": float("inf")}}, "x.toml: run.step_s = inf: must be a finite number, > 0 and"),
         ({"run": {"count": 0.5}}, "x.toml: run.count = 0.5: must be a whole number, >= 1"),
         ({"run": {"on": 1}}, "x.toml: run.on = 1: must be true or false"),

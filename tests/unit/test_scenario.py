@@ -110,7 +110,8 @@ def test_defaults_are_one_free_method_and_no_errors():
         ({"run": {"step_s": True}}, "x.toml: run.step_s = True: must be a number, >= 0.005 and <= 10 (s)"),
         (
             {"imu": {"gyro_bias_dph": [0, "0.7", 0]}},
-            "x.toml: imu.gyro_bias_dph.1 = '0.7': must be a number, >= -100000 and <= 100000 (°/h)",
+            "x.toml: imu.gyro_bias_dph.1 = '0.7': must be a number (write 0.7 without quotation marks), "
+            ">= -100000 and <= 100000 (°/h)",
         ),
         ({"method": []}, "x.toml: method = 0: must be 1 to 12 blocks [[method]]"),
     ],

@@ -47,11 +47,11 @@ def test_a_decimal_comma_is_named(text: str, line: str) -> None:
     assert refused(text).removeprefix("x.toml: ") == line.format(wanted)
 
 
-def test_a_decimal_comma_on_the_command_line_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "zha-fast", "--set", "run.duration_h=1,5"]) == 2
+def test_a_decimal_comma_between_fields_on_the_command_line_is_named(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["network", 'id = "unity2", zeta = 0,7']) == 2
-    first, second = capsys.readouterr().err.splitlines()
-    assert "1.5, not with a decimal comma" in first and "0.7, not with a decimal comma" in second
+    assert "0.7, not with a decimal comma" in capsys.readouterr().err
 
 
 NOT_OF_COMMAS = ("[run]\nduration_h = 2 x\n", 'title = "a = 1,5"\nx y\n', "x = [1,2 y # a = 1,5\n")

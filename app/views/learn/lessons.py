@@ -34,6 +34,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.numbers import read_number, read_whole
 from navcore.foundation.text import Text
 from navcore.scenario.file import apply_overrides, load
 from navcore.scenario.model import Scenario
@@ -351,10 +352,10 @@ def is_right(question: Question, given: str, run: Run) -> bool:
 
     Raises
     ------
-    ValueError
+    NotANumber
         ``given`` is no number.
     """
     if question.choices:
-        return int(given) == right_choice(question, run)
+        return read_whole(given) == right_choice(question, run)
     value = named(question.answer, run).value
-    return abs(float(given.replace(",", ".")) - value) <= question.tolerance * abs(value)
+    return abs(read_number(given) - value) <= question.tolerance * abs(value)

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from navcore.engine.run import Run
+from navcore.foundation.numbers import NotANumber
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits, form
@@ -267,8 +268,9 @@ class LearnView(View):
         run = self._run_of(self._scenario())
         try:
             right = is_right(question, given, run)
-        except ValueError:
-            return Text('<p class="sb-wrong"><b>{unreadable}</b></p>', unreadable=_UNREADABLE), False
+        except NotANumber as error:
+            unreadable = Text("{error:html}. {example}", error=str(error), example=_UNREADABLE)
+            return Text('<p class="sb-wrong"><b>{unreadable}</b></p>', unreadable=unreadable), False
         if right:
             why = to_html(question.why, run).removeprefix("<p>")
             return Text('<p class="sb-right"><b>&#10003; Right.</b><br>{why}', why=why), True
