@@ -18,7 +18,7 @@ from navcore.io.compressed import head_of
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
-from navcore.io.series import Recording, Series, SourceReport, StreamReport, utc_text
+from navcore.io.series import LeftOut, Recording, Series, SourceReport, StreamReport, utc_text
 from navcore.io.source import require_file
 from navcore.io.stretches import stretch_warnings
 from navcore.io.suspects import suspect_warnings
@@ -76,6 +76,9 @@ def check_log(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     quantities = {name: _quantity(name, series) for name, series in recording.quantities().items()}
     details = {
         "lines": source.lines,
+        "lines_used": source.used,
+        "lines_left_out": [_left_out(one) for one in source.lines_left_out],
+        "fields_left_out": [_left_out(one) for one in source.fields_left_out],
         "sentences": {s.name: _stream(s) for s in source.streams},
         "checksum_faults": source.checksum_faults,
         "without_checksum": source.without_checksum,
@@ -92,6 +95,10 @@ def check_log(path: Path, column_map: ColumnMap | None = None) -> FileReport:
         tuple(_text(source, recording, quantities)),
         _warnings(source, recording),
     )
+
+
+def _left_out(one: LeftOut) -> dict[str, Any]:
+    return {"kind": one.kind, "field": one.field, "why": one.why, "count": one.count}
 
 
 def _stream(stream: StreamReport) -> dict[str, Any]:
@@ -193,6 +200,7 @@ def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]
         )
         words.append(f"  {_NAMES[name]} ({entry['source']}): {samples}")
         words += [f"    {_extent(key, entry[key])}" for key in entry if key.endswith(("_deg", "_kn", "_mps"))]
+    words += [Text("  {choice}", choice=choice) for choice in source.choices]
     clock = clock_text(recording)
     return [*words, Text("  {clock}", clock=clock)] if clock else words
 

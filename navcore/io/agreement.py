@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG
+from navcore.foundation.units import DEG, KNOT
 from navcore.io.courses import SPEED_SLIPS, Way, under_way
 from navcore.io.plausible import slip_of
 from navcore.io.series import Recording, Series
@@ -28,6 +28,19 @@ _SHARE = 1.0 / 3.0
 _SURE = 4.0
 _KNOWN = 0.05
 """Share of a factor up to which it may be unsure; tides and a straight course leave it unsure by more."""
+_LEAST_FACTOR = 0.3
+"""A factor below, or above its inverse, is offered only where a unit has it."""
+_FAR_UNITS = {
+    1e3: Text("m/s taken for mm/s, or the reverse"),
+    1e-3: Text("m/s taken for mm/s, or the reverse"),
+    1e2: Text("m/s taken for cm/s, or the reverse"),
+    1e-2: Text("m/s taken for cm/s, or the reverse"),
+    100.0 * KNOT: Text("knots taken for cm/s, or the reverse"),
+    0.01 / KNOT: Text("knots taken for cm/s, or the reverse"),
+    10.0: Text("tenths of the unit"),
+    0.1: Text("tenths of the unit"),
+}
+"""By the speed that is given over the true one."""
 _WORST_CONDITION = 30.0
 _ALIKE = 30
 """Samples whose residuals are taken for one: currents and steering change slowly."""
@@ -188,9 +201,17 @@ def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[Finding]:
         known = deviation < _KNOWN * max(abs(factor), 1.0)
         if not known or abs(factor - 1.0) <= max(LARGEST_SCALE_ERROR, _SURE * deviation):
             continue
-        slip = Text("the wrong sign")
-        if factor > 0.0:
-            slip = slip_of(1.0 / factor, SPEED_SLIPS, LARGEST_SCALE_ERROR) or Text("a wrong unit or scale")
+        slip = slip_of(1.0 / factor, SPEED_SLIPS | _FAR_UNITS, LARGEST_SCALE_ERROR) if factor > 0.0 else ""
+        if not slip and not _LEAST_FACTOR <= abs(factor) <= 1.0 / _LEAST_FACTOR:
+            told = Text(
+                "{what} agrees with the motion over ground by no factor that a unit or a sign would "
+                "explain: is it "
+                "another quantity, or does the log or the heading fail?",
+                what=what,
+            )
+            yield Finding(told, "water")
+            continue
+        slip = slip or (Text("a wrong unit or scale") if factor > 0.0 else Text("the wrong sign"))
         told = Text(
             "{what} agrees with the motion over ground when it is multiplied by {factor:.3g} "
             "± {deviation:.2g} (a steady current is taken off): {slip}?",

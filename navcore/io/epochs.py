@@ -1,7 +1,6 @@
 """Numbers of time: which epoch and unit they count from, by the column's name and the size of the numbers."""
 
 import re
-from datetime import UTC, datetime
 
 import numpy as np
 
@@ -9,17 +8,11 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.cells import unix_or_elapsed
 from navcore.io.column_names import SECONDS, UNIX, Column, plain_name
+from navcore.io.times.steps import LEAPS_S
 
 GPS_EPOCH_S = 315964800.0
 """1980-01-06, Unix time."""
 _DAY = 86400.0
-_LEAP_DATES = (
-    "1981-07 1982-07 1983-07 1985-07 1988-01 1990-01 1991-01 1992-07 1993-07 1994-07 1996-01 1997-07 1999-01 "
-    "2006-01 2009-01 2012-07 2015-07 2017-01"
-).split()
-_LEAPS_S = [
-    datetime.strptime(f"{date}-01", "%Y-%m-%d").replace(tzinfo=UTC).timestamp() for date in _LEAP_DATES
-]
 _GPS = re.compile(r"(?:^|_)(?:gps|gpst)(?:_|$)")
 _LAST_GPS_S = 1.6e9
 """GPS time in s up to 2030; larger numbers under such a name are Unix time."""
@@ -36,7 +29,7 @@ _FASTEST_HZ, _SLOWEST_STEP_S = 1440.0, 4.0 * 3600.0
 def gps_to_unix(gps_s: np.ndarray) -> np.ndarray:
     """Unix time (UTC) of s since 1980-01-06 that count leap seconds, shape (n,)."""
     unix = gps_s + GPS_EPOCH_S
-    leaps = np.searchsorted(np.array(_LEAPS_S) + np.arange(1, len(_LEAPS_S) + 1), unix, side="right")
+    leaps = np.searchsorted(LEAPS_S + np.arange(1, LEAPS_S.size + 1), unix, side="right")
     return unix - leaps
 
 

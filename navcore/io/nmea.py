@@ -4,17 +4,16 @@ Only whole sentences with a right checksum are used; a file in which too many ar
 backwards, is refused rather than used in part.
 """
 
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_sentences
-from navcore.io.nmea_readings import JITTER_S, Channel, Gathered, Quantities
+from navcore.io.nmea_readings import JITTER_S, Gathered, Ordered
 from navcore.io.nmea_sentences import KINDS, is_used
 from navcore.io.source import read_text
 
@@ -22,6 +21,14 @@ MOST_BAD_CHECKSUMS = 0.2
 """A file is refused when more than this share of its sentences (or of one kind used) has a wrong checksum."""
 MOST_LATE = 0.01
 """A file is refused when the time of more than this share of its used sentences runs backwards."""
+QUANTITY_NAMES = {
+    "position": Text("position"),
+    "velocity": Text("velocity over ground"),
+    "water": Text("speed through the water"),
+    "ground": Text("speed over ground along axes"),
+    "heading": Text("heading"),
+}
+"""Names of what sentences hold."""
 _CLOCK_WARNING_S = 5.0
 _MOST_NAMED = 12
 
@@ -32,19 +39,19 @@ class NmeaLog:
 
     Attributes
     ----------
-    readings : dict
-        Quantities of each channel.
-    times : dict
-        By name of a kind, as the tally has it: times of its intact sentences, s.
+    ordered : Ordered
+        Quantities of each channel, and what becomes of each sentence.
     tally : Tally
         Counts of lines and faults.
+    damaged_lines : int
+        Lines that were left out for what they hold.
     warnings : tuple of str
         What was left out or looks odd.
     """
 
-    readings: dict[Channel, Quantities]
-    times: dict[str, np.ndarray]
+    ordered: Ordered
     tally: Tally
+    damaged_lines: int
     warnings: tuple[str, ...]
 
 
@@ -62,10 +69,10 @@ def read_nmea(path: Path) -> NmeaLog:
     gathered = Gathered(tally)
     for sentences in intact_sentences(content.text, tally):
         gathered.add(sentences, clock)
-    readings, times = gathered.in_order()
+    ordered = gathered.in_order()
+    tally.lines += content.damaged_lines
     _refuse_unusable(path, tally)
-    warnings = (*content.warnings(), *_warnings(tally))
-    return NmeaLog(readings, times, tally, warnings)
+    return NmeaLog(ordered, tally, content.damaged_lines, (*content.warnings(), *_warnings(tally)))
 
 
 def _refuse_unusable(path: Path, tally: Tally) -> None:
@@ -73,10 +80,11 @@ def _refuse_unusable(path: Path, tally: Tally) -> None:
         where = Text("{name}, line {line}", name=path.name, line=line) if line else path.name
         return InputError(Fault(where, "", None, allowed))
 
-    if tally.first_late is not None and tally.late > MOST_LATE * (tally.used + tally.late):
-        line, seconds, address = tally.first_late
+    late = tally.late.total()
+    if tally.first_late is not None and late > MOST_LATE * (tally.used + late):
+        line, seconds, address, advice = tally.first_late
         back = Text("time runs backwards by {seconds:.1f} s ({address})", seconds=seconds, address=address)
-        raise refuse(Text("{back}: put the lines in order or split the file", back=back), line)
+        raise refuse(Text("{back}: {advice}", back=back, advice=advice), line)
     total, bad = tally.intact.total() + tally.bad.total(), tally.bad.total()
     worst = [
         f"{address} {count}/{count + tally.intact[address]}"
@@ -125,6 +133,12 @@ def _named(names: list[str]) -> str:
     return ", ".join(names[:_MOST_NAMED]) + more
 
 
+def _counted(kinds: Counter[str]) -> str:
+    """Kinds with their counts, the most frequent first, in brackets."""
+    named = [f"{count} {kind}" for kind, count in kinds.most_common(_MOST_NAMED) if kind]
+    return f" ({', '.join(named)})" if named else ""
+
+
 def _warnings(tally: Tally) -> list[str]:
     """Say what was left out or looks odd."""
     words: list[str] = []
@@ -140,8 +154,9 @@ def _warnings(tally: Tally) -> list[str]:
     if tally.unparsable:
         words.append(
             Text(
-                "{unparsable} lines that are no sentence or make no sense left out",
+                "{unparsable} lines that are no sentence or make no sense left out{kinds}",
                 unparsable=tally.unparsable,
+                kinds=_counted(tally.senseless),
             )
         )
     if tally.without_checksum:
@@ -152,7 +167,41 @@ def _warnings(tally: Tally) -> list[str]:
             )
         )
     if tally.untimed:
-        words.append(Text("{untimed} sentences before the first known time left out", untimed=tally.untimed))
+        words.append(
+            Text(
+                "{untimed} sentences before the first known time left out{kinds}",
+                untimed=tally.untimed.total(),
+                kinds=_counted(tally.untimed),
+            )
+        )
+    if tally.empty:
+        words.append(
+            Text.plural(
+                "{count} sentence without a reading in its fields left out{kinds}",
+                "{count} sentences without a reading in their fields left out{kinds}",
+                count=tally.empty.total(),
+                kinds=_counted(tally.empty),
+            )
+        )
+    words += [
+        Text(
+            "{count} readings of the {quantity} ({address}) flagged invalid by the instrument",
+            count=count,
+            quantity=QUANTITY_NAMES[quantity],
+            address=address,
+        )
+        for (address, quantity), count in tally.flagged.items()
+    ]
+    if tally.spread:
+        words.append(
+            Text(
+                "{spread} sentences without a time of their own lie between two known times: spread evenly "
+                "between "
+                "them",
+                spread=tally.spread,
+            )
+        )
+    words += tally.notes
     if tally.jitter:
         words.append(
             Text(
@@ -166,7 +215,7 @@ def _warnings(tally: Tally) -> list[str]:
             Text.plural(
                 "{count} sentence whose time runs backwards left out (first: line {first_late})",
                 "{count} sentences whose time runs backwards left out (first: line {first_late})",
-                count=tally.late,
+                count=tally.late.total(),
                 first_late=tally.first_late[0],
             )
         )

@@ -1,12 +1,11 @@
-"""UTC of each sentence of a log: from its own time, from the stamp beside it, from what was known before.
+"""UTC that a sentence of a log gives: its own time, or the stamp beside it.
 
-In this order: the sentence's own UTC (the stamp says which day, since old receivers give wrong dates); the
-stamp; the last time known. Stamps in local time are told by the first dated sentence and corrected.
+The stamp says which day, since old receivers give wrong dates. Stamps in local time are told by the first
+dated sentence and corrected. What gives no time has it from its neighbours (`navcore.io.times.between`).
 """
 
 import math
 import re
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import numpy as np
 from navcore.io.nmea_lines import Sentences, Tally
 from navcore.io.nmea_values import seconds_of
 from navcore.io.stamps import LONGEST_STAMP, StampReader, midnight
+from navcore.io.times.steps import leap_seconds
 
 _DAY = 86400.0
 _QUARTER_S = 900.0
@@ -24,6 +24,7 @@ _CLOCK_ERROR_S = 120.0
 """By how much a logger's clock may be off for its time zone to be recognised."""
 _LEAST_ERROR_S, _LARGEST_ERROR_S = 5.0, 3600.0
 """An error of the logger's clock within these is taken from the first dated sentence, for all lines."""
+_LEAP_SLACK_S = 1.5
 _LONGEST_SENTENCE = 120
 _MOST_TRIES = 20_000
 _LOGGED_ADDRESS = "UNIXD"
@@ -49,11 +50,12 @@ class Clock:
     def __init__(self, text: str, name: str, tally: Tally) -> None:
         self._tally = tally
         self._now: float | None = None
+        self._without_fix: float | None = None
         self._logged: float | None = None
         dated = _first_dated(text)
         self._date = None if dated is None else dated[0] // _DAY * _DAY
         if dated is not None:
-            ahead = _ahead(text, *dated)
+            ahead = _settled(text, dated)
             tally.local_time_s = _zone(ahead)
             wrong = ahead - tally.local_time_s
             tally.clock_error_s = wrong if _LEAST_ERROR_S < abs(wrong) <= _LARGEST_ERROR_S else 0.0
@@ -61,35 +63,61 @@ class Clock:
         known = datetime.fromtimestamp(self._date, UTC).year if self._date is not None else None
         self._year = int(year[1]) if year is not None else known
 
-    def times(self, sentences: Sentences, readings: np.ndarray) -> Iterator[float]:
-        """UTC of the next sentences, s since 1970 (since midnight when nothing is dated).
+    def times(self, sentences: Sentences, readings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """UTC that each of the next sentences gives, s since 1970 (since midnight when nothing is dated).
 
-        NaN when it is unknown, and for what makes no sense. The readings, shape (n,), are of
-        `navcore.io.nmea_sentences.READING`.
+        Parameters
+        ----------
+        readings : ndarray of `navcore.io.nmea_sentences.READING`, shape (n,)
+
+        Returns
+        -------
+        time_s : ndarray, shape (n,)
+            NaN of a sentence that gives none, and of one that makes no sense.
+        doubtful : ndarray of bool, shape (n,)
+            Which are the time of a receiver without a fix.
         """
         rows, text = sentences.rows, sentences.block.text
+        found: list[float] = []
+        doubtful = np.zeros(len(sentences.addresses), bool)
         columns = (
             rows["stamp_s"],
             rows["dated"],
-            *(readings[name] for name in ("sensible", "time_of_day", "day")),
+            *(readings[name] for name in ("sensible", "invalid", "time_of_day", "day")),
         )
-        for row, (stamp_s, dated, sensible, time_of_day, day) in enumerate(
+        for row, (stamp_s, dated, sensible, invalid, time_of_day, day) in enumerate(
             zip(*(column.tolist() for column in columns), strict=True)
         ):
             if not sensible:
-                yield math.nan
+                found.append(math.nan)
                 continue
-            if sentences.addresses[row] == _LOGGED_ADDRESS:
+            told = sentences.addresses[row] == _LOGGED_ADDRESS
+            if told:
                 self._take_logged(text[rows["begin"][row] : rows["end"][row]])
             near = self._near(stamp_s, dated)
-            if math.isnan(time_of_day):
-                self._now = self._now if near is None else near
+            if math.isnan(time_of_day) or (invalid and near is not None):
+                if near is None or (math.isnan(stamp_s) and not told):
+                    found.append(math.nan)
+                    continue
+                self._now = near
+            elif invalid:
+                found.append(self._of_no_fix(time_of_day, day))
+                doubtful[row] = True
+                continue
             elif near is None:
                 self._now = self._without_stamp(time_of_day, day)
             else:
                 self._now = _nearest_day(time_of_day, near)
                 self._tally.clock_offsets.append(near - self._now)
-            yield math.nan if self._now is None else self._now
+            found.append(self._now)
+        return np.array(found), doubtful
+
+    def _of_no_fix(self, own: float, day: float) -> float:
+        """Time of a receiver without a fix: near the last one, whatever date it gives."""
+        near = self._without_fix if self._now is None else self._now
+        found = self._without_stamp(own, day) if near is None else _nearest_day(own, near)
+        self._without_fix = found
+        return found
 
     def _take_logged(self, body: str) -> None:
         """Take the time of a line ``$UNIXD,<days since the year began>``: it holds for the lines after."""
@@ -158,6 +186,28 @@ def _moment(key: str, fields: str) -> float | None:
     except (ValueError, IndexError, OverflowError):  # no calendar has it
         return None
     return moment
+
+
+def _settled(text: str, dated: tuple[float, int]) -> float:
+    """By how much the stamps are ahead of UTC, s: by the first dated sentence, or by the last one.
+
+    A receiver that does not know the leap seconds yet is ahead of UTC by them at the first one.
+    """
+    ahead, last = _ahead(text, *dated), _last_dated(text)
+    if last is None:
+        return ahead
+    later = _ahead(text, *last)
+    learnt = abs(later - ahead - leap_seconds(dated[0])) < _LEAP_SLACK_S
+    return later if learnt else ahead
+
+
+def _last_dated(text: str) -> tuple[float, int] | None:
+    found = [(position, key) for key in _DATE_PLACES if (position := text.rfind(key)) >= 0]
+    for position, key in sorted(found, reverse=True):
+        moment = _moment(key, text[position + 4 : position + 4 + _LONGEST_SENTENCE].split("\n", 1)[0])
+        if moment is not None:
+            return moment, position
+    return None
 
 
 def _ahead(text: str, utc: float, position: int) -> float:

@@ -40,13 +40,18 @@ class Tally:
     lines: int = 0
     intact: Counter[str] = field(default_factory=Counter)
     bad: Counter[str] = field(default_factory=Counter)
-    unparsable: int = 0
+    senseless: Counter[str] = field(default_factory=Counter)
+    """Lines that make no sense by their address; without one, those that are no sentence."""
     without_checksum: int = 0
-    untimed: int = 0
+    untimed: Counter[str] = field(default_factory=Counter)
+    empty: Counter[str] = field(default_factory=Counter)
+    """Sentences whose fields say nothing."""
+    spread: int = 0
+    """Sentences without a time of their own that share the time between two others."""
     jitter: int = 0
-    late: int = 0
-    first_late: tuple[int, float, str] | None = None
-    """Line, seconds and address of the first sentence whose time ran backwards."""
+    late: Counter[str] = field(default_factory=Counter)
+    first_late: tuple[int, float, str, str] | None = None
+    """Line, seconds and address of the first sentence whose time ran backwards, and what to do about it."""
     first_bad_line: int = 0
     dated: bool = True
     local_time_s: float = 0.0
@@ -59,7 +64,16 @@ class Tally:
     used: int = 0
     """Readings."""
     invalid: int = 0
-    """Readings that the instrument calls invalid."""
+    """Sentences of which the instrument calls a reading invalid."""
+    flagged: Counter[tuple[str, str]] = field(default_factory=Counter)
+    """These readings by address and quantity."""
+    notes: list[str] = field(default_factory=list)
+    """What was found of the times."""
+
+    @property
+    def unparsable(self) -> int:
+        """Lines that are no sentence or make no sense."""
+        return self.senseless.total()
 
     def count(self, counter: Counter[str], addresses: Iterable[str]) -> dict[str, str]:
         """Count addresses, each or as one of the many others; return what they were counted as."""
@@ -165,7 +179,7 @@ def _others(
             if not content or content[0] == "#":
                 continue
             before, sentences, after = _split(content, begin)
-        tally.lines += 1
+        tally.lines += max(1, len(sentences))
         stamp, rest = None, ""
         try:
             if before:
@@ -173,8 +187,10 @@ def _others(
             if stamp is None and after:
                 stamp, _ = stamps.read(after.rstrip()[:LONGEST_STAMP])
         except ValueError:
+            tally.count(tally.senseless, (text[begin : begin + 5] for begin, _, _ in sentences))
             sentences = []
-        tally.unparsable += not sentences
+        else:
+            tally.senseless[""] += not sentences
         source = _source(rest) if rest else ""
         seconds, dated = stamp or (math.nan, True)
         for sentence in sentences:

@@ -1,23 +1,33 @@
 """Readings of a whole NMEA 0183 log: its sentences decoded, timed, put in order and told apart by channel."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from itertools import compress
 from typing import NamedTuple
 
 import numpy as np
 
+from navcore.foundation.text import Text
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import Sentences, Tally
-from navcore.io.nmea_sentences import decode
+from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, OTHER_MESSAGE, decode
+from navcore.io.times.between import filled, trusted
+from navcore.io.times.doubts import trust_of
+from navcore.io.times.steps import back_advice, without_leap_step
 
 JITTER_S = 0.2
 """A sentence may be this much older than the latest of its kind; more is called time running backwards."""
 MOST_SOURCES = 8
 """Words beside the sentences are instruments' names when there are no more different ones."""
-_ROW = np.dtype(
-    [("time_s", float), ("kind", np.int32), ("channel", np.int32), ("line", np.int32), ("invalid", bool)]
-)
-"""Of a sentence whose time is known; the channel is -1 when it says no more than that."""
+UNREAD, INVALID, EMPTY, UNTIMED, UNSET, LATE, REPEATED, OTHER, USED = range(9)
+"""What becomes of a sentence: its kind is not read; a flag calls it invalid; its fields say nothing; no time
+is known; its date is that of a clock that was not set; its time runs backwards; another stands at its time;
+another instrument is taken; it is used."""
+_ROW = np.dtype([
+    ("time_s", float), ("doubtful", bool), ("own", bool), ("kind", np.int32), ("channel", np.int32),
+    ("line", np.int32), ("invalid", bool), ("fate", np.int8),
+])  # fmt: skip
+"""Of a sentence that makes sense: the time that it gives, NaN without; whether a receiver without a fix gave
+it, and whether it is no stamp; the channel is -1 when it says no more than its time."""
 
 
 class Channel(NamedTuple):
@@ -27,8 +37,40 @@ class Channel(NamedTuple):
     address: str
 
 
-Quantities = dict[str, tuple[np.ndarray, np.ndarray]]
-"""By name: UTC in s, shape (n,), and values as of `navcore.io.nmea_sentences.Readings`, shape (n, k)."""
+class Held(NamedTuple):
+    """A quantity of one channel: UTC in s, (n,), values, (n, k), and the numbers of its sentences."""
+
+    time_s: np.ndarray
+    values: np.ndarray
+    rows: np.ndarray
+
+
+Quantities = dict[str, Held]
+"""By name; values as of `navcore.io.nmea_sentences.Readings`."""
+
+
+class Ordered(NamedTuple):
+    """Readings of one file.
+
+    Attributes
+    ----------
+    readings : dict
+        Quantities of each channel.
+    times : dict
+        By kind, as the tally has it: times of its sentences, s.
+    fates : ndarray of int8, shape (n,)
+        What becomes of each sentence; those of the readings are `OTHER` until they are taken.
+    kinds : ndarray of int, shape (n,)
+        Of each sentence: places among the names.
+    names : list of str
+        Of the kinds.
+    """
+
+    readings: dict[Channel, Quantities]
+    times: dict[str, np.ndarray]
+    fates: np.ndarray
+    kinds: np.ndarray
+    names: list[str]
 
 
 class Gathered:
@@ -46,47 +88,58 @@ class Gathered:
         self._channels: dict[Channel, int] = {}
         self._rows = [np.empty(0, _ROW)]
         self._count = 0
+        self._carried: dict[str, int] = {}
         self._quantities: defaultdict[str, list[tuple[np.ndarray, np.ndarray]]] = defaultdict(list)
 
     def add(self, sentences: Sentences, clock: Clock) -> None:
-        """Decode the next sentences and tell their times."""
+        """Decode the next sentences and tell the times that they give."""
         tally, addresses = self._tally, sentences.addresses
-        readings = decode(sentences)
+        readings = decode(sentences, self._carried)
         sensible, invalid = readings.rows["sensible"], readings.rows["invalid"]
-        tally.unparsable += int(np.count_nonzero(~sensible))
-        tally.doubts.update(doubt for _, doubt in sorted(readings.doubts.items()))
+        if not sensible.all():
+            tally.count(tally.senseless, compress(addresses, ~sensible))
+        tally.doubts.update(dict(sorted(readings.doubts.items())))
+        tally.flagged.update(dict(sorted(readings.invalid.items())))
         names = tally.count(tally.intact, compress(addresses, sensible))
         kinds = {address: self._kinds.setdefault(name, len(self._kinds)) for address, name in names.items()}
-        time_s = np.fromiter(clock.times(sentences, readings.rows), float, len(addresses))
-        timed = ~np.isnan(time_s)
-        tally.untimed += int(np.count_nonzero(readings.rows["used"] & sensible & ~timed))
-        row_of, telling = self._count - 1 + np.cumsum(timed), invalid.copy()
+        time_s, doubtful = clock.times(sentences, readings.rows)
+        row_of, telling = self._count - 1 + np.cumsum(sensible), invalid.copy()
+        role = readings.rows["role"]
+        fates = np.where(readings.rows["used"], np.where(invalid, INVALID, EMPTY), UNREAD).astype(np.int8)
+        fates[role == OTHER_MESSAGE], fates[role == ABOUT_OTHERS] = UNREAD, USED
         for name, places, values in readings.quantities:
             telling[places] = True
-            if name in ("water", "ground"):
+            fates[places] = OTHER
+            if name in ALONG_AXES:
                 invalid[places] |= values[:, 2] == 0.0
-            known = timed[places]
-            self._quantities[name].append((row_of[places[known]], values[known]))
-        rows = np.empty(np.count_nonzero(timed), _ROW)
-        rows["time_s"], rows["invalid"] = time_s[timed], invalid[timed]
-        rows["line"] = sentences.rows["line"][timed]
-        rows["kind"] = [kinds[address] for address in compress(addresses, timed)]
+            self._quantities[name].append((row_of[places], values))
+        rows = np.empty(np.count_nonzero(sensible), _ROW)
+        rows["time_s"], rows["invalid"] = time_s[sensible], invalid[sensible]
+        rows["doubtful"], rows["fate"] = doubtful[sensible], fates[sensible]
+        rows["own"] = (~np.isnan(readings.rows["time_of_day"]) & ~(invalid & ~doubtful))[sensible]
+        rows["line"] = sentences.rows["line"][sensible]
+        rows["kind"] = [kinds[address] for address in compress(addresses, sensible)]
         rows["channel"] = -1
-        told, channels = timed & telling, self._channels
-        rows["channel"][telling[timed]] = [
+        told, channels = sensible & telling, self._channels
+        rows["channel"][telling[sensible]] = [
             channels.setdefault(channel, len(channels))
             for channel in map(Channel, compress(sentences.sources, told), compress(addresses, told))
         ]
         self._rows.append(rows)
         self._count += len(rows)
 
-    def in_order(self) -> tuple[dict[Channel, Quantities], dict[str, np.ndarray]]:
-        """Readings by channel, and the times of the sentences by kind; what runs backwards is left out."""
+    def in_order(self) -> Ordered:
+        """Readings by channel; what has no time, or one that cannot be, is left out and counted."""
         rows = np.concatenate(self._rows)
-        channel, kept = rows["channel"], ~self._late(rows)
-        self._tally.used = int(np.count_nonzero(kept & (channel >= 0)))
-        self._tally.invalid = int(np.count_nonzero(kept & (channel >= 0) & rows["invalid"]))
-        times = {name: rows["time_s"][kept & (rows["kind"] == kind)] for name, kind in self._kinds.items()}
+        self._tell_times(rows)
+        channel, fates = rows["channel"], rows["fate"]
+        kept = fates >= OTHER
+        self._tally.used = int(np.count_nonzero((channel >= 0) & (kept | (fates == INVALID))))
+        self._tally.invalid = int(
+            np.count_nonzero((channel >= 0) & rows["invalid"] & (kept | (fates == INVALID)))
+        )
+        timed = ~np.isnan(rows["time_s"]) & (fates != LATE) & (fates != UNSET)
+        times = {name: rows["time_s"][timed & (rows["kind"] == kind)] for name, kind in self._kinds.items()}
         names = _of_instruments(list(self._channels))
         codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
         joined = np.array([codes[name] for name in names], int)
@@ -99,13 +152,53 @@ class Gathered:
             bounds = np.searchsorted(joined[channel[row]], np.arange(len(codes) + 1))
             for name, begin, end in zip(codes, bounds, bounds[1:], strict=False):
                 if begin < end:
-                    readings[name][quantity] = rows["time_s"][row[begin:end]], values[begin:end]
-        return readings, times
+                    part = row[begin:end]
+                    readings[name][quantity] = Held(rows["time_s"][part], values[begin:end], part)
+        return Ordered(readings, times, fates, rows["kind"], list(self._kinds))
+
+    def _tell_times(self, rows: np.ndarray) -> None:
+        """Give every sentence its time, in place, and mark those that have none or one that cannot be."""
+        tally, given = self._tally, trusted(rows["time_s"], rows["doubtful"])
+        rows["time_s"][~given] = np.nan
+        clock = given & rows["own"]
+        if tally.dated:
+            mended, count, leaps = without_leap_step(rows["time_s"][clock])
+            if count:
+                rows["time_s"][clock] = mended
+                tally.notes.append(
+                    Text(
+                        "{count} times of the receiver before it knew the leap seconds are {leaps} s ahead "
+                        "of UTC: "
+                        "taken off",
+                        count=count,
+                        leaps=leaps,
+                    )
+                )
+        rows["time_s"], tally.spread = filled(rows["time_s"], rows["channel"])
+        fates = rows["fate"]
+        # A sentence that says nothing but its time is used as the clock.
+        fates[(fates == EMPTY) & clock] = USED
+        untimed = np.isnan(rows["time_s"]) & (fates >= OTHER)
+        fates[untimed] = UNTIMED
+        timed = np.flatnonzero(~np.isnan(rows["time_s"]))
+        if tally.dated and timed.size:
+            trust = trust_of(rows["time_s"][timed], Text("sentences"))
+            unset = timed[~trust.kept]
+            fates[unset[fates[unset] >= OTHER]] = UNSET
+            rows["time_s"][unset] = np.nan
+            tally.notes += trust.warnings
+        late = self._late(rows)
+        fates[late & (fates >= OTHER)] = LATE
+        names = list(self._kinds)
+        for counter, fate in ((tally.untimed, UNTIMED), (tally.empty, EMPTY), (tally.late, LATE)):
+            found = Counter(rows["kind"][fates == fate].tolist())
+            counter.update({names[kind]: count for kind, count in found.items()})
 
     def _late(self, rows: np.ndarray) -> np.ndarray:
         """Which times run backwards; they and those within the jitter are counted."""
         order = np.argsort(rows["channel"], kind="stable")
         order = order[np.searchsorted(rows["channel"][order], 0) :]
+        order = order[~np.isnan(rows["time_s"][order])]
         starts = np.flatnonzero(np.diff(rows["channel"][order])) + 1
         back_s = np.zeros(len(rows))
         for part in np.split(order, starts):
@@ -113,11 +206,13 @@ class Gathered:
             back_s[part] = np.maximum.accumulate(time_s) - time_s
         late = back_s > JITTER_S + 1e-3
         self._tally.jitter = int(np.count_nonzero((back_s > 0.0) & ~late))
-        self._tally.late = int(np.count_nonzero(late))
-        if self._tally.late:
-            first = late.argmax()
+        if late.any():
+            first = int(late.argmax())
             address = list(self._channels)[rows["channel"][first]].address
-            self._tally.first_late = int(rows["line"][first]), float(back_s[first]), address
+            of_channel = order[rows["channel"][order] == rows["channel"][first]]
+            place = int(np.searchsorted(of_channel, first)) - 1
+            advice = back_advice(rows["time_s"][of_channel], place, self._tally.dated)
+            self._tally.first_late = int(rows["line"][first]), float(back_s[first]), address, advice
         return late
 
 

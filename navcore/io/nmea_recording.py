@@ -1,21 +1,66 @@
-"""From the sentences of an NMEA 0183 log to its quantities: the best instrument of each."""
+"""From the sentences of an NMEA 0183 log to its quantities, and an account of all its lines."""
 
-from collections import defaultdict
-from collections.abc import Iterable
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from navcore.foundation.text import Text
+from navcore.io.choices import choice_texts
 from navcore.io.formats import Candidate
-from navcore.io.nmea import NmeaLog, read_nmea
+from navcore.io.nmea import QUANTITY_NAMES, NmeaLog, read_nmea
 from navcore.io.nmea_lines import looks_like_nmea
-from navcore.io.nmea_readings import Channel
-from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
+from navcore.io.nmea_readings import (
+    EMPTY,
+    INVALID,
+    LATE,
+    OTHER,
+    REPEATED,
+    UNREAD,
+    UNSET,
+    UNTIMED,
+    USED,
+    Channel,
+    Held,
+)
+from navcore.io.nmea_sentences import ALONG_AXES
+from navcore.io.series import (
+    LeftOut,
+    Recording,
+    Series,
+    SourceReport,
+    first_of_each_time,
+    stream_report,
+    tidy,
+)
 
-Picked = tuple[str, np.ndarray, np.ndarray]
-"""Source, UTC in s, shape (n,), and values, shape (n, k)."""
+_HEADINGS = ("HDT", "THS", "PASHR", "PSXN", "PSAT", "PRDID", "VHW", "HDG")
+"""Kinds that give the heading, the better ones first."""
+_KINDS = {
+    "velocity": ("RMC", "VTG"), "water": ("VBW", "VHW"), "ground": ("VBW",), "heading": _HEADINGS,
+}  # fmt: skip
+_PLACES = ("GGA", "GNS", "RMC", "GLL")
+_CHECKSUM = Text("wrong checksum")
+_WHY = {
+    UNREAD: Text("this kind is not read"),
+    INVALID: Text("flagged invalid by the instrument"),
+    EMPTY: Text("no reading in its fields"),
+    UNTIMED: Text("before the first known time"),
+    UNSET: Text("dated before the clock was set"),
+    LATE: Text("its time runs backwards"),
+    REPEATED: Text("another stands at the same time"),
+    OTHER: Text("another source is taken"),
+}
+
+
+class Picked(NamedTuple):
+    """Readings of one quantity from one instrument, by the name of their sentences."""
+
+    address: str
+    held: Held
 
 
 def recognises(candidate: Candidate) -> bool:
@@ -26,24 +71,26 @@ def recognises(candidate: Candidate) -> bool:
 def read(path: Path) -> Recording:
     """Read one NMEA 0183 log; raises `InputError`."""
     log = read_nmea(path)
-    tally = log.tally
-    used = {channel.address for channel in log.readings}
+    tally, fates = log.tally, log.ordered.fates
+    found = {
+        "position": _positions(log),
+        **{name: _picked(log, name, kinds) for name, kinds in _KINDS.items()},
+    }
+    taken = {name: sources[0] for name, sources in found.items() if sources}
+    series = {name: _series(path, log, name, picked) for name, picked in taken.items()}
+    for picked in taken.values():
+        rows = picked.held.rows
+        fates[rows[fates[rows] == OTHER]] = REPEATED
+        fates[rows[first_of_each_time(picked.held.time_s)]] = USED
+    used = {log.ordered.names[kind] for kind in np.unique(log.ordered.kinds[fates == USED])}
     streams = tuple(
-        stream_report(address, count, address in used, log.times[address])
+        stream_report(address, count, address in used, log.ordered.times[address])
         for address, count in tally.intact.most_common()
     )
-    flagged = (
-        [Text("{invalid} readings flagged invalid by the instrument", invalid=tally.invalid)]
-        if tally.invalid
-        else []
+    told, differing = choice_texts(
+        (name, [(one.address, one.held.time_s, one.held.values) for one in sources])
+        for name, sources in found.items()
     )
-    series = {
-        "position": _positions(path, log),
-        "velocity": _series(path, log, _pick(log, ("RMC", "VTG"), "velocity")),
-        "water": _along_axes(path, log, _pick(log, ("VBW", "VHW"), "water")),
-        "ground": _along_axes(path, log, _pick(log, ("VBW",), "ground")),
-        "heading": _series(path, log, _pick(log, _HEADINGS, "heading")),
-    }
     source = SourceReport(
         path.name,
         "NMEA 0183 log",
@@ -53,61 +100,76 @@ def read(path: Path) -> Recording:
         tally.unparsable,
         tally.without_checksum,
         tally.invalid,
-        tally.untimed,
+        tally.untimed.total(),
         tally.jitter,
-        (*log.warnings, *flagged),
+        (*log.warnings, *differing),
+        int(np.count_nonzero(fates == USED)),
+        tuple(_lines_left_out(log)),
+        tuple(
+            LeftOut(address, QUANTITY_NAMES[quantity], _WHY[INVALID], count)
+            for (address, quantity), count in tally.flagged.items()
+        ),
+        tuple(told),
     )
     return Recording(**series, sources=(source,))
 
 
-_HEADINGS = ("HDT", "THS", "PASHR", "PSXN", "PRDID", "VHW", "HDG")
-"""Kinds that give the heading, the better ones first."""
+def _lines_left_out(log: NmeaLog) -> Iterator[LeftOut]:
+    """Lines that are not used, by kind and reason."""
+    tally = log.tally
+    if log.damaged_lines:
+        yield LeftOut("", "", Text("holds NUL bytes"), log.damaged_lines)
+    for kind, count in tally.senseless.items():
+        if count:
+            yield LeftOut(kind, "", Text("makes no sense") if kind else Text("is no sentence"), count)
+    for kind, count in tally.bad.items():
+        yield LeftOut(kind, "", _CHECKSUM, count)
+    lost = log.ordered.fates != USED
+    found = Counter(zip(log.ordered.kinds[lost].tolist(), log.ordered.fates[lost].tolist(), strict=True))
+    for (kind, fate), count in found.most_common():
+        yield LeftOut(log.ordered.names[kind], "", _WHY[fate], count)
 
 
-def _pick(log: NmeaLog, kinds: Iterable[str], quantity: str) -> Picked | None:
-    """Readings of the first kind that has the quantity; of several instruments the one with most."""
+def _picked(log: NmeaLog, quantity: str, kinds: Iterable[str]) -> list[Picked]:
+    """Readings of a quantity by instrument: of the better kind first, of one kind those with most first."""
+    found: list[Picked] = []
     for kind in kinds:
-        found = [
-            (channel.address, *held[quantity])
-            for channel, held in log.readings.items()
+        of_kind = [
+            Picked(channel.address, held[quantity])
+            for channel, held in log.ordered.readings.items()
             if quantity in held and kind in (channel.address[2:], channel.address)
         ]
-        if found:
-            return max(found, key=lambda picked: len(picked[1]))
-    return None
+        found += sorted(of_kind, key=lambda picked: -len(picked.held.time_s))
+    # An instrument all of whose readings are flagged invalid serves only where there is no other.
+    return sorted(found, key=lambda picked: quantity in ALONG_AXES and not picked.held.values[:, 2].any())
 
 
-def _series(path: Path, log: NmeaLog, picked: Picked | None) -> Series | None:
-    if picked is None:
-        return None
-    address, time_s, values = picked
-    return tidy(time_s, values, path.name, address, dated=log.tally.dated)
-
-
-def _along_axes(path: Path, log: NmeaLog, picked: Picked | None) -> Series | None:
-    """Series of starboard and forward speeds whose third value is the log's own valid flag."""
-    series = _series(path, log, picked)
-    if series is None:
-        return None
+def _series(path: Path, log: NmeaLog, quantity: str, picked: Picked) -> Series | None:
+    series = tidy(picked.held.time_s, picked.held.values, path.name, picked.address, dated=log.tally.dated)
+    if series is None or quantity not in ALONG_AXES:
+        return series
     valid = series.values[:, 2] != 0.0
     return replace(series, values=np.where(valid[:, None], series.values[:, :2], 0.0), valid=valid)
 
 
-def _positions(path: Path, log: NmeaLog) -> Series | None:
-    """Fixes of the receiver that gives most.
+def _positions(log: NmeaLog) -> list[Picked]:
+    """Fixes by receiver, those of the one that gives most first.
 
     From GGA or GNS, which have the height, and RMC where they are silent; from GLL only where no other is.
     """
-    receivers: defaultdict[Channel, dict[str, tuple[np.ndarray, np.ndarray]]] = defaultdict(dict)
-    for kind in ("GGA", "GNS", "RMC", "GLL"):
-        for (source, address), held in log.readings.items():
+    receivers: defaultdict[Channel, dict[str, Held]] = defaultdict(dict)
+    for kind in _PLACES:
+        for (source, address), held in log.ordered.readings.items():
             if "position" in held and address[2:] == kind:
                 receivers[Channel(source, address[:2])][kind] = held["position"]
     for kinds in receivers.values():
         if len(kinds) > 1:
             kinds.pop("GLL", None)
-    best = max(receivers, key=lambda talker: sum(len(t) for t, _ in receivers[talker].values()), default=None)
-    if best is None:
-        return None
-    time_s, values = (np.concatenate(columns) for columns in zip(*receivers[best].values(), strict=True))
-    return _series(path, log, (best.address + "+".join(receivers[best]), time_s, values))
+    found = [
+        Picked(
+            talker.address + "+".join(kinds),
+            Held(*(np.concatenate(c) for c in zip(*kinds.values(), strict=True))),
+        )
+        for talker, kinds in receivers.items()
+    ]
+    return sorted(found, key=lambda picked: -len(picked.held.time_s))

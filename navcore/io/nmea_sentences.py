@@ -5,7 +5,7 @@ is infinite. An instrument's own "invalid" gives a reading with ``valid`` False.
 """
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -14,19 +14,34 @@ import numpy as np
 from navcore.foundation.units import DEG, KNOT
 from navcore.io import nmea_values as value
 from navcore.io.decimals import decimals
+from navcore.io.nmea_flags import INVALID_CODE, Flag, flag_of, letters_of, words_of
 from navcore.io.nmea_lines import Sentences
 
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
-_QUALITIES = {"6": "dead-reckoned", "7": "manual", "8": "simulated"}
 
 
 READING = np.dtype(
-    [("used", bool), ("sensible", bool), ("invalid", bool), ("time_of_day", float), ("day", float)]
+    [
+        ("used", bool),
+        ("sensible", bool),
+        ("invalid", bool),
+        ("role", np.int8),
+        ("time_of_day", float),
+        ("day", float),
+    ]
 )
 """Of a sentence: whether it is of a kind that is decoded; whether its fields make sense; whether the receiver
-calls the whole of it invalid (nothing else is filled in then); its own UTC, s after midnight, and UTC
-midnight of its own date, s since 1970; NaN without."""
+calls the whole of it invalid (no quantity is filled in then); whether it is a reading (0), another message
+of its maker (`OTHER_MESSAGE`) or one that speaks of others (`ABOUT_OTHERS`); its own UTC, s after midnight,
+and UTC midnight of its own date, s since 1970; NaN without."""
+
+
+ALONG_AXES = ("water", "ground")
+"""Quantities whose last value says whether the log calls them valid."""
+
+
+OTHER_MESSAGE, ABOUT_OTHERS = 1, 2
 
 
 class Readings(NamedTuple):
@@ -41,14 +56,15 @@ class Readings(NamedTuple):
         ``position``: latitude, longitude (rad), height above the ellipsoid (m, NaN if not given).
         ``velocity``: E, N over the ground, m/s. ``water``, ``ground``: starboard, forward speed (m/s) and
         whether the log calls it valid. ``heading``: rad, from true north.
-    doubts : dict
-        By sentence: its address, and what the receiver calls a fix that it did not measure (dead-reckoned,
-        manual, simulated).
+    doubts, invalid : Counter
+        Readings by their address and by what a flag says of them (simulated, manual, dead-reckoned); those
+        that a flag calls invalid by their address and quantity.
     """
 
     rows: np.ndarray
     quantities: list[tuple[str, np.ndarray, np.ndarray]]
-    doubts: dict[int, tuple[str, str]]
+    doubts: Counter[tuple[str, str]]
+    invalid: Counter[tuple[str, str]]
 
 
 class Fields:
@@ -60,6 +76,8 @@ class Fields:
         Among which they are.
     rows : ndarray of int, shape (n,)
         Which they are.
+    carried : dict
+        Flags of the last sentence of each instrument that speaks of others, as numbers.
 
     Attributes
     ----------
@@ -67,12 +85,18 @@ class Fields:
         How many each sentence has.
     """
 
-    def __init__(self, sentences: Sentences, rows: np.ndarray) -> None:
+    def __init__(self, sentences: Sentences, rows: np.ndarray, carried: dict[str, int]) -> None:
+        self._sentences, self._rows, self.carried = sentences, rows, carried
         self._block, begins = sentences.block, sentences.rows["begin"][rows]
         self._ends = sentences.rows["end"][rows]
         self._stops = np.append(self._block.commas, self._block.letters.size)
         self._first = np.searchsorted(self._block.commas, begins)
         self.count = np.searchsorted(self._block.commas, self._ends) - self._first
+
+    @property
+    def sources(self) -> list[str]:
+        """Instruments of the sentences."""
+        return [self._sentences.sources[row] for row in self._rows.tolist()]
 
     def _places(self, place: int) -> tuple[np.ndarray, np.ndarray]:
         """Where the fields begin and end."""
@@ -93,6 +117,18 @@ class Fields:
         for k, letter in enumerate(text):
             same &= self._block.ascii(begins + k) == ord(letter)
         return same
+
+    def codes(self, *flags: Flag) -> np.ndarray:
+        """What flags say of the readings, as numbers of `navcore.io.nmea_flags`; of several the worst."""
+        worst = np.zeros(self.count.size, np.int8)
+        for flag in flags:
+            begins, ends = self._places(flag.place)
+            letters, empty, code_of = letters_of(flag)
+            found = np.where(ends > begins, letters[self._block.ascii(begins)], empty)
+            for row in np.flatnonzero(ends > begins + 1).tolist():
+                found[row] = code_of(self._block.text[begins[row] : ends[row]])
+            worst = np.maximum(worst, found)
+        return worst
 
     def of(self, read: Callable[..., float], *places: int) -> np.ndarray:
         """Values of the fields at some places."""
@@ -168,7 +204,7 @@ def _over_ground(fields: Fields, course: int, speed: np.ndarray) -> np.ndarray:
 def _axes(fields: Fields, first: int) -> np.ndarray:
     """Speeds along the ship's axes; a single-axis log has no transverse speed."""
     forward, transverse = fields.speeds(first), fields.speeds(first + 1)
-    given, measured = ~np.isnan(forward), fields.are(first + 2, "A")
+    given, measured = ~np.isnan(forward), fields.codes(flag_of("VBW", first + 2)) != INVALID_CODE
     axes = np.column_stack([_or_zero(transverse), forward, np.ones_like(forward)])
     axes[~(given & measured)] = 0.0
     axes[np.isinf(forward)] = math.inf
@@ -176,12 +212,9 @@ def _axes(fields: Fields, first: int) -> np.ndarray:
     return axes
 
 
-def _needed(heading: np.ndarray) -> np.ndarray:
-    return np.where(np.isnan(heading), math.inf, heading)
-
-
 Decoded = dict[str, Any]
-"""By name: values of the fields, shape (n,) or (n, k), ``valid`` and ``doubt``; see `Readings`."""
+"""By name: values of the fields, shape (n,) or (n, k); see `Readings`. ``flags`` are those of the whole
+sentence."""
 Decoder = Callable[[Fields], Decoded]
 
 
@@ -197,51 +230,46 @@ def _vhw(fields: Fields) -> Decoded:
 
 def _vtg(fields: Fields) -> Decoded:
     velocity = _over_ground(fields, 0, _speed(fields, 4, 6))
-    return {"valid": ~fields.are(8, "N"), "velocity": velocity, "doubt": map(value.doubt, fields.texts(8))}
+    return {"flags": fields.codes(flag_of("VTG", 8)), "velocity": velocity}
 
 
 def _rmc(fields: Fields) -> Decoded:
     return {
-        "valid": fields.are(1, "A"),
+        "flags": fields.codes(flag_of("RMC", 1), flag_of("RMC", 11)),
         "time_of_day": fields.of(value.time_of_day, 0),
         "day": fields.of(value.day, 8),
         "position": _place(fields, 2),
         "velocity": _over_ground(fields, 7, fields.speeds(6)),
-        "doubt": map(value.doubt, fields.texts(11)),
     }
 
 
 def _gga(fields: Fields) -> Decoded:
-    quality = fields.of(value.quality, 5)
     return {
-        "valid": quality != 0.0,
-        "time_of_day": np.where(np.isinf(quality), math.inf, fields.of(value.time_of_day, 0)),
+        "flags": fields.codes(flag_of("GGA", 5)),
+        "time_of_day": fields.of(value.time_of_day, 0),
         "position": _place(fields, 1, _height(fields, 10)),
-        "doubt": (_QUALITIES.get(field, "") for field in fields.texts(5)),
     }
 
 
 def _hdt(fields: Fields) -> Decoded:
-    return {"heading": _needed(fields.headings(0))}
+    return {"heading": fields.headings(0)}
 
 
 def _gll(fields: Fields) -> Decoded:
     """Place, time and status; the oldest form has the place alone, which does not say that it is invalid."""
     oldest = fields.count == 4
     return {
-        "valid": oldest | fields.are(5, "A"),
+        "flags": np.where(oldest, 0, fields.codes(flag_of("GLL", 5), flag_of("GLL", 6))),
         "time_of_day": np.where(oldest, math.nan, fields.of(value.time_of_day, 4)),
         "position": _place(fields, 0),
-        "doubt": map(value.doubt, fields.texts(6)),
     }
 
 
 def _gns(fields: Fields) -> Decoded:
     return {
-        "valid": fields.of(value.measures, 5) != 0.0,
+        "flags": fields.codes(flag_of("GNS", 5)),
         "time_of_day": fields.of(value.time_of_day, 0),
         "position": _place(fields, 1, _height(fields, 9)),
-        "doubt": map(value.doubt, fields.texts(5)),
     }
 
 
@@ -263,8 +291,8 @@ def _hdg(fields: Fields) -> Decoded:
 
 def _ths(fields: Fields) -> Decoded:
     """True heading and status, which must not be left out: ``THS,77.52,A`` (V: invalid)."""
-    heading = np.where(fields.count < 2, math.inf, _needed(fields.headings(0)))
-    return {"valid": ~fields.are(1, "V"), "heading": heading}
+    heading = np.where(fields.count < 2, math.inf, fields.headings(0))
+    return {"flags": fields.codes(flag_of("THS", 1)), "heading": heading}
 
 
 def _pashr(fields: Fields) -> Decoded:
@@ -272,19 +300,46 @@ def _pashr(fields: Fields) -> Decoded:
     time_s = fields.of(value.makers_time, 0)
     attitude = (fields.count >= 5) & fields.are(2, "T") & ~np.isnan(time_s)
     return {
+        "role": np.where(attitude, 0, OTHER_MESSAGE),
+        "flags": np.where(attitude, fields.codes(flag_of("PASHR", 9), flag_of("PASHR", 10)), 0),
         "time_of_day": np.where(attitude, time_s, math.nan),
         "heading": np.where(attitude, fields.headings(1), math.nan),
     }
 
 
+def _psat(fields: Fields) -> Decoded:
+    """Attitude of Hemisphere's compasses: ``PSAT,HPR,time,heading,pitch,roll,N``; others say nothing."""
+    attitude = fields.are(0, "HPR")
+    return {
+        "role": np.where(attitude, 0, OTHER_MESSAGE),
+        "flags": np.where(attitude, fields.codes(flag_of("PSAT,HPR", 5)), 0),
+        "time_of_day": np.where(attitude, fields.of(value.makers_time, 1), math.nan),
+        "heading": np.where(attitude, fields.headings(2), math.nan),
+    }
+
+
 def _psxn(fields: Fields) -> Decoded:
-    """Attitude of a Seapath: ``PSXN,23,roll,pitch,heading,heave``; its other messages say nothing."""
-    return {"heading": np.where(fields.are(0, "23"), _needed(fields.headings(3)), math.nan)}
+    """Attitude of a Seapath, ``PSXN,23,roll,pitch,heading,heave``; ``PSXN,20`` before it flags it."""
+    attitude, quality = fields.are(0, "23"), fields.are(0, "20")
+    told = fields.codes(flag_of("PSXN,20", 3))
+    flags = np.zeros(fields.count.size, np.int8)
+    sources = fields.sources
+    for source in set(sources):
+        own = np.flatnonzero([source == one for one in sources])
+        last = np.maximum.accumulate(np.where(quality[own], np.arange(own.size), -1))
+        of_own = np.where(last >= 0, told[own[last]], fields.carried.get(source, 0))
+        fields.carried[source] = int(of_own[-1])
+        flags[own] = of_own
+    return {
+        "role": np.where(attitude, 0, np.where(quality, ABOUT_OTHERS, OTHER_MESSAGE)),
+        "flags": np.where(attitude, flags, 0),
+        "heading": np.where(attitude, fields.headings(3), math.nan),
+    }
 
 
 def _prdid(fields: Fields) -> Decoded:
     """Attitude as RD Instruments has it: ``PRDID,pitch,roll,heading``."""
-    return {"heading": _needed(fields.headings(2))}
+    return {"heading": fields.headings(2)}
 
 
 _STANDARD: dict[str, Decoder] = {
@@ -301,7 +356,7 @@ _STANDARD: dict[str, Decoder] = {
     "ZDA": _zda,
 }
 """Decoders by the last letters of the address; an older talker may leave out the last fields."""
-_MAKERS: dict[str, Decoder] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
+_MAKERS: dict[str, Decoder] = {"PASHR": _pashr, "PRDID": _prdid, "PSAT": _psat, "PSXN": _psxn}
 """Decoders of makers' own sentences, by the whole address."""
 KINDS = ", ".join((*sorted(_STANDARD), *_MAKERS))
 """Sentences that can be read, for messages."""
@@ -317,17 +372,17 @@ def is_used(address: str) -> bool:
     return _decoder(address) is not None
 
 
-def decode(sentences: Sentences) -> Readings:
-    """Readings of the sentences of used kinds."""
-    nothing = np.array((False, True, False, math.nan, math.nan), READING)
-    readings = Readings(np.full(len(sentences.addresses), nothing), [], {})
+def decode(sentences: Sentences, carried: dict[str, int] | None = None) -> Readings:
+    """Readings of the sentences of used kinds; ``carried`` keeps flags from one block to the next."""
+    nothing = np.array((False, True, False, 0, math.nan, math.nan), READING)
+    readings = Readings(np.full(len(sentences.addresses), nothing), [], Counter(), Counter())
     decoders = {address: _decoder(address) for address in set(sentences.addresses)}
     rows_of: defaultdict[Decoder | None, list[int]] = defaultdict(list)
     for row, address in enumerate(sentences.addresses):
         rows_of[decoders[address]].append(row)
     for decoder, rows in rows_of.items():
         if decoder is not None:
-            fields = Fields(sentences, which := np.array(rows))
+            fields = Fields(sentences, which := np.array(rows), {} if carried is None else carried)
             _fill(readings, sentences.addresses, which, fields.count > 0, decoder(fields))
     return readings
 
@@ -335,20 +390,31 @@ def decode(sentences: Sentences) -> Readings:
 def _fill(
     readings: Readings, addresses: list[str], rows: np.ndarray, sensible: np.ndarray, decoded: Decoded
 ) -> None:
-    """Fill in what was decoded of the sentences of one kind."""
-    valid = decoded.pop("valid", np.ones(rows.size, bool))
-    doubts = decoded.pop("doubt", ())
+    """Fill in what was decoded of the sentences of one kind.
+
+    A time counts in an invalid sentence too: a receiver without a fix still has a clock.
+    """
+    flags = decoded.pop("flags", np.zeros(rows.size, np.int8))
+    readings.rows["role"][rows] = decoded.pop("role", 0)
+    valid = flags != INVALID_CODE
     columns = {name: values.reshape(rows.size, -1) for name, values in decoded.items()}
     for values in columns.values():
         sensible &= ~(valid & np.isinf(values).any(axis=1))
     filled = valid & sensible
     for name, told in (("used", True), ("sensible", sensible), ("invalid", ~valid)):
         readings.rows[name][rows] = told
-    said = zip(rows.tolist(), doubts, filled.tolist(), strict=False)
-    readings.doubts.update((row, (addresses[row], doubt)) for row, doubt, counts in said if doubt and counts)
     for name, values in columns.items():
-        held = filled & ~np.isnan(values[:, 0])
+        known = np.isfinite(values[:, 0])
         if name in ("time_of_day", "day"):
+            held = sensible & known
             readings.rows[name][rows[held]] = values[held, 0]
-        else:
-            readings.quantities.append((name, rows[held], values[held]))
+            continue
+        held = filled & known
+        readings.quantities.append((name, rows[held], values[held]))
+        lost = sensible & ~valid
+        if name in ALONG_AXES:
+            lost |= held & (values[:, 2] == 0.0)
+        if lost.any():
+            readings.invalid.update((addresses[row], name) for row in rows[lost].tolist())
+    doubtful = np.flatnonzero(filled & (flags != 0))
+    readings.doubts.update((addresses[rows[row]], words_of(flags[row])) for row in doubtful.tolist())

@@ -9,7 +9,6 @@ from navcore.io.stamps import midnight
 
 _TIME = re.compile(r"(?:[01]\d|2[0-3])[0-5]\d[0-5]\d(?:\.\d*)?")
 _DEGREES = re.compile(r"(\d+)(\d\d\.\d+)")
-_MODES = {"E": "dead-reckoned", "M": "manual", "S": "simulated"}
 
 
 def _remembered(value: Callable[..., float]) -> Callable[..., float]:
@@ -79,22 +78,3 @@ def degrees(field: str) -> float:
         return 0.0
     parts = _DEGREES.fullmatch(field)
     return int(parts[1]) + float(parts[2]) / 60.0 if parts else math.inf
-
-
-@_remembered
-def quality(field: str) -> float:
-    """Whether a receiver's quality is that of a fix: 0, or nothing, is none."""
-    return float(int(field) != 0) if field else 0.0
-
-
-@_remembered
-def measures(modes: str) -> float:
-    """Whether any system of a receiver has a fix, by the letters of its mode."""
-    return float(not set(modes) <= {"N"})
-
-
-@lru_cache(maxsize=4096)
-def doubt(modes: str) -> str:
-    """Kind of fix that the letters of a receiver's mode, one a system, give when all agree."""
-    said = set(modes) - {"N"}
-    return _MODES.get(said.pop(), "") if len(said) == 1 else ""

@@ -18,6 +18,7 @@ from navcore.io.formats import format_of, mapped_format
 from navcore.io.placeholders import without_zero_places
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.io.source import require_file
+from navcore.io.times.steps import reason_of
 
 PathLike = str | os.PathLike[str]
 NO_TABLE = Text("describes a table (CSV, Parquet, MAT or npz), and this is none")
@@ -194,25 +195,12 @@ def shared_window(series: Iterable[Series], field: str = "file") -> Window:
     return Window(float(start), float(end), float(begin))
 
 
-_ROLLOVER_S = 1024 * 7 * 86400.0
-
-
 def _apart(streams: list[Series]) -> str:
-    """Hint at the whole weeks or hours by which streams lie apart; or empty."""
-    first, last = min(s.time_s[0] for s in streams), max(s.time_s[0] for s in streams)
+    """Hint at the known time by which streams lie apart: weeks of a counter, a day, hours; or empty."""
+    first, last = (pick(s.time_s[0] for s in streams) for pick in (min, max))
     reach = max(s.time_s[-1] - s.time_s[0] for s in streams) + 2.0 * LONGEST_REACH_S
-    weeks = round((last - first) / _ROLLOVER_S)
-    if weeks and abs(last - first - weeks * _ROLLOVER_S) < reach:
-        return Text(
-            "; they lie {days} days = {weeks} weeks apart: a receiver's week counter has rolled over, "
-            "its dates are too early",
-            days=weeks * 7168,
-            weeks=weeks * 1024,
-        )
-    hours = round((last - first) / HOUR)
-    if 1 <= hours <= 14 and abs(last - first - hours * HOUR) < min(reach, 0.25 * HOUR):
-        return Text("; they lie {hours} h apart: is one of them in local time?", hours=hours)
-    return ""
+    reason = reason_of(last - first, reach, last if streams[0].dated else 0.0)
+    return Text("; they lie apart by {reason}", reason=reason) if reason else ""
 
 
 def require_cover(window: Window, start_s: float, duration_s: float, what: str, file: object) -> None:

@@ -85,6 +85,16 @@ def gaps_of(time_s: np.ndarray) -> tuple[int, float]:
     return int(gaps.size), float(gaps.max(initial=0.0))
 
 
+def first_of_each_time(time_s: np.ndarray) -> slice | np.ndarray:
+    """Places of the times in their order, the first of several within 1 ms."""
+    if np.all(np.diff(time_s) > _SAME_S):
+        return slice(None)
+    order = np.argsort(time_s, kind="stable")
+    first = np.ones(time_s.size, dtype=bool)
+    first[1:] = np.diff(time_s[order]) > _SAME_S
+    return order[first]
+
+
 def tidy(
     time_s: np.ndarray,
     values: np.ndarray,
@@ -99,12 +109,7 @@ def tidy(
     if time_s.size == 0:
         return None
     flags = np.ones(time_s.size, dtype=bool) if valid is None else valid
-    chosen: slice | np.ndarray = slice(None)
-    if not np.all(np.diff(time_s) > _SAME_S):
-        order = np.argsort(time_s, kind="stable")
-        first = np.ones(time_s.size, dtype=bool)
-        first[1:] = np.diff(time_s[order]) > _SAME_S
-        chosen = order[first]
+    chosen = first_of_each_time(time_s)
     kept = values[chosen] if flags.all() else np.where(flags[chosen, None], values[chosen], 0.0)
     return Series(time_s[chosen].copy(), kept, flags[chosen].copy(), file, what, dated, tabled)
 
@@ -154,6 +159,28 @@ def stream_report(name: str, count: int, used: bool, times: Iterable[float]) -> 
 
 
 @dataclass(frozen=True)
+class LeftOut:
+    """Readings, or whole lines, that are not used.
+
+    Attributes
+    ----------
+    kind : str
+        Address of the sentences, or name of the column; empty for lines that are neither.
+    field : str
+        Quantity of which these sentences say nothing that is used; empty for the whole line.
+    why : str
+        Reason.
+    count : int
+        How many.
+    """
+
+    kind: str
+    field: str
+    why: str
+    count: int
+
+
+@dataclass(frozen=True)
 class SourceReport:
     """Account of one file.
 
@@ -173,6 +200,14 @@ class SourceReport:
         run backwards within the tolerance (sorted).
     warnings : tuple of str
         What the user should know.
+    used : int
+        Lines of which something is used.
+    lines_left_out : tuple of LeftOut
+        All others: with ``used`` their counts are ``lines``.
+    fields_left_out : tuple of LeftOut
+        Readings that are missing in lines of which others are used.
+    choices : tuple of str
+        Where a quantity has several sources: which is taken, and by how much the others differ.
     """
 
     name: str
@@ -186,6 +221,10 @@ class SourceReport:
     untimed: int = 0
     jitter: int = 0
     warnings: tuple[str, ...] = ()
+    used: int = 0
+    lines_left_out: tuple[LeftOut, ...] = ()
+    fields_left_out: tuple[LeftOut, ...] = ()
+    choices: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,21 @@ LARGEST_FILE_BYTES = 64 * 1024 * 1024
 _MOST_ODD_BYTES = 0.01
 _FEW_ODD_BYTES = 8
 _NULS = re.compile(rb"\0{2,}")
+_HOLE = re.compile(rb"\0{9,}(?=[$!])")
+"""Where a logger lost its power: what stood before is cut, a sentence begins behind."""
+_CONTROL = rb"[\0-\x08\x0e-\x1f\x7f\xff]"
+_NOISE = re.compile(
+    rb"(?<!%b)%b{1,8}(?=[$!\r\n]|\Z)|(?<=[\r\n])%b{1,8}(?!%b)" % (_CONTROL, _CONTROL, _CONTROL, _CONTROL)
+)
+"""What an instrument or its interface sends beside its lines: before the mark of a sentence, or at the
+ends."""
 _ASCII_TEXT = bytes(range(0x20, 0x7F)) + b"\t\n\v\f\r"
 _HIGH_BYTES = bytes(range(0x80, 0x100))
+_LETTERS = bytes(range(0xA0, 0xFF))
+"""Of code page 1252."""
+_MOST_LETTERS = 0.3
+"""Of a text in code page 1252 that are no ASCII; more are another encoding."""
+_ODD = bytes((*range(0x09), *range(0x0E, 0x20), 0x7F, 0xFF))
 
 
 def require_file(path: str | os.PathLike[str], where: str = "", field: str = "") -> Path:
@@ -86,24 +99,28 @@ class FileText(NamedTuple):
 
 
 def read_text(path: Path, field: str = "") -> FileText:
-    """Text of a file, unpacked if it is compressed; single odd bytes (line noise) become U+FFFD.
+    """Text of a file, unpacked if it is compressed: UTF-8, UTF-16, or else code page 1252.
 
-    A run of NUL bytes counts as one: a logger that loses its power leaves them behind.
+    NUL bytes at the ends of a line or before the mark of a sentence are left out, as an interface sends
+    them. A run of them elsewhere counts as one, and costs its line: a logger that loses its power leaves
+    them behind.
 
     Raises
     ------
     InputError
         Binary content (more than 1 % of bytes that are not printable text), or nothing but white space.
     """
-    raw = _unwrapped(unpacked(path, LARGEST_FILE_BYTES, field))
-    text = _utf8(raw)
-    odd = len(raw.translate(None, _ASCII_TEXT if text is None else _ASCII_TEXT + _HIGH_BYTES))
+    raw = unpacked(path, LARGEST_FILE_BYTES, field)
+    if not raw.strip(b" \t\n\v\f\r\0"):
+        raise InputError(Fault(path.name, field, None, Text("the file is empty")))
+    raw = _unwrapped(raw)
+    text, code_page = _decoded(raw)
+    odd = len(raw.translate(None, _ASCII_TEXT + (_LETTERS if code_page else _HIGH_BYTES)))
+    if code_page and len(raw.translate(None, bytes(range(0x80)))) > _MOST_LETTERS * len(raw):
+        odd = len(raw)
     if odd > max(_MOST_ODD_BYTES * len(raw), _FEW_ODD_BYTES):
         allowed = Text("binary content; expected a text file (NMEA 0183 or CSV)")
         raise InputError(Fault(path.name, field, None, allowed))
-    if not raw.strip(b" \t\n\v\f\r\0"):
-        raise InputError(Fault(path.name, field, None, Text("the file is empty")))
-    text = text if text is not None else raw.decode("ascii", errors="replace")
     text = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
     damaged = 0
     if "\0" in text:
@@ -114,16 +131,37 @@ def read_text(path: Path, field: str = "") -> FileText:
 
 
 def _unwrapped(raw: bytes) -> bytes:
-    """Bytes of UTF-8 (or nearly so) without the mark of an encoding and without long runs of NUL bytes."""
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")) and len(raw) % 2 == 0 and raw.count(b"\0") > len(raw) // 4:
-        raw = raw.decode("utf-16", errors="replace").encode()
+    """Bytes in UTF-8 if they were UTF-16, without the mark of an encoding and noise beside lines."""
+    if _is_utf16(raw):
+        marked = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+        encoding = (
+            "utf-16" if marked else "utf-16-le" if raw[1::2].count(0) > raw[::2].count(0) else "utf-16-be"
+        )
+        raw = raw.decode(encoding, errors="replace").encode()
     if raw.startswith(b"\xef\xbb\xbf"):
         raw = raw[3:]
+    if len(raw.translate(None, _ODD)) < len(raw):
+        raw = _HOLE.sub(b"\0\n", _NOISE.sub(b"", raw))
     return _NULS.sub(b"\0", raw) if b"\0\0" in raw else raw
 
 
-def _utf8(raw: bytes) -> str | None:
+def _is_utf16(raw: bytes) -> bool:
+    """Whether nearly every second byte is NUL, and hardly one of the others."""
+    if b"\0" not in raw:
+        return False
+    nuls = raw[::2].count(0), raw[1::2].count(0)
+    return len(raw) % 2 == 0 and max(nuls) > len(raw) // 4 and min(nuls) * 20 <= max(nuls)
+
+
+def _decoded(raw: bytes) -> tuple[str, bool]:
+    """Text in UTF-8, else in code page 1252, as spreadsheets of western Europe write it; and which."""
     try:
-        return raw.decode("utf-8")
+        return raw.decode("utf-8"), False
     except UnicodeDecodeError:
-        return None
+        return raw.decode("cp1252", errors="replace"), True
+
+
+def as_utf8(raw: bytes) -> bytes:
+    """Text of any of these encodings in UTF-8."""
+    raw = _unwrapped(raw)
+    return raw if raw.isascii() else _decoded(raw)[0].encode()

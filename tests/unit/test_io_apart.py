@@ -18,7 +18,7 @@ def _series(start_s: float) -> Series:
     [
         (1024 * 604800.0, "1024 weeks"),
         (-2048 * 604800.0 + 7.0, "2048 weeks"),
-        (3 * 3600.0, "3 h apart: is one of them in local time"),
+        (3 * 3600.0, "3 h: is one of them in local time"),
     ],
 )
 def test_the_reason_is_named(apart_s: float, said: str) -> None:

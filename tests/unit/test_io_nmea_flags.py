@@ -1,0 +1,106 @@
+"""Flags of quality of every sentence that is read: what is not valid is left out, what was not measured is
+told.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from navcore.io.nmea_flags import FLAGS, INVALID, UNKNOWN, Flag, meaning
+from navcore.io.nmea_sentences import KINDS
+from navcore.io.recording import read_recording
+from tests.nmea import sentence, stamped, write
+
+PLACE = "3800.0000,N,00900.0000,E"
+BODIES = {
+    "RMC": "GPRMC,23580{k}.00,A," + PLACE + ",5.0,20.0,280224,,,A",
+    "GLL": "GPGLL," + PLACE + ",23580{k}.00,A,A",
+    "GGA": "GPGGA,23580{k}.00," + PLACE + ",1,08,1.0,12.0,M,-20.0,M,,",
+    "GNS": "GNGNS,23580{k}.00," + PLACE + ",A,12,0.9,10.0,-20.0,,",
+    "VTG": "GPVTG,20.0,T,,M,5.0,N,9.3,K,A",
+    "THS": "HETHS,20.0,A",
+    "VBW": "VDVBW,8.0,0.1,A,7.9,0.1,A,,V,,V",
+    "PASHR": "PASHR,23580{k}.00,20.0,T,1.0,-1.0,0.1,0.1,0.1,0.2,1,1",
+    "PSXN,20": "PSXN,20,0,0,0,0",
+    "PSAT,HPR": "PSAT,HPR,23580{k}.00,20.0,1.0,-1.0,N",
+}
+LETTERS = sorted({letter for flag in FLAGS for letter in flag.meanings} | {"A", "V", "N", "Q", "4"})
+ROWS = [(flag, letter) for flag in FLAGS for letter in LETTERS]
+
+
+def _body(flag: Flag, letter: str, k: int) -> str:
+    fields = BODIES[flag.sentence].format(k=k).split(",")
+    fields[flag.place + 1] = letter
+    return ",".join(fields)
+
+
+def _lines(flag: Flag, letter: str, count: int) -> list[str]:
+    lines: list[str] = []
+    for k in range(count):
+        lines.append(stamped(k, _body(flag, letter, k)))
+        if flag.sentence == "PSXN,20":
+            lines.append(stamped(k, "PSXN,23,1.0,-1.0,20.0,0.1"))
+    return lines
+
+
+@pytest.mark.parametrize(("flag", "letter"), ROWS, ids=[f"{f.sentence} {f.place} {x!r}" for f, x in ROWS])
+def test_a_flag_means_the_same_in_the_table_and_in_a_log(tmp_path: Path, flag: Flag, letter: str) -> None:
+    said = meaning(flag, letter)
+    lines = [*_lines(flag, letter, 5), stamped(6, "PRDID,1.0,2.0,47.3"), stamped(7, "VWVHW,,,,,5.0,N,,")]
+    read = read_recording(write(tmp_path / "log.txt", lines))
+    told = " ".join(read.warnings)
+    for quantity in flag.quantities:
+        series = read.quantities().get(quantity)
+        count = 0 if series is None else int(series.valid[series.time_s < series.time_s[0] + 5.5].sum())
+        of_flag = series is not None and flag.sentence.partition(",")[0] in series.what
+        assert (count if of_flag else 0) == (0 if said == INVALID else 5)
+    if said == INVALID:
+        assert "flagged invalid" in told and "5 readings of the" in told
+    elif said:
+        assert f"are {said}" in told and "5 readings" in told
+    else:
+        assert "flagged" not in told and "no truth" not in told
+
+
+def test_every_sentence_that_is_read_has_flags_or_is_known_to_have_none() -> None:
+    flagged = {flag.sentence.partition(",")[0] for flag in FLAGS}
+    assert set(KINDS.split(", ")) - flagged == {"HDG", "HDT", "PRDID", "VHW", "ZDA"}
+
+
+def test_letters_of_several_systems_count_where_they_agree() -> None:
+    gns = next(flag for flag in FLAGS if flag.sentence == "GNS")
+    assert [meaning(gns, modes) for modes in ("NN", "AN", "EN", "EA", "SS", "")] == [
+        INVALID, "", "dead-reckoned", "", "simulated", INVALID,
+    ]  # fmt: skip
+
+
+def test_a_letter_in_no_table_is_told(tmp_path: Path) -> None:
+    lines = [sentence(BODIES["RMC"].format(k=k)[:-1] + "Q") for k in range(3)]
+    assert any(UNKNOWN in told for told in read_recording(write(tmp_path / "log.txt", lines)).warnings)
+
+
+def test_the_quality_of_one_seapath_says_nothing_of_another(tmp_path: Path) -> None:
+    lines: list[str] = []
+    for k in range(10):
+        moment = f"2024-02-28T23:58:{k:02d}Z"
+        lines += [
+            f"old {moment} {sentence('PSXN,20,0,0,2,0')}",
+            f"old {moment} {sentence('PSXN,23,1,1,211.3,0')}",
+        ]
+        lines += [
+            f"new {moment} {sentence('PSXN,20,0,0,0,0')}",
+            f"new {moment} {sentence('PSXN,23,1,1,60.0,0')}",
+        ]
+    read = read_recording(write(tmp_path / "log.txt", lines))
+    assert read.heading is not None
+    assert read.heading.time_s.size == 10
+    assert any("10 readings of the heading (PSXN) flagged invalid" in told for told in read.warnings)
+
+
+def test_of_a_log_that_has_lost_the_water_another_is_taken(tmp_path: Path) -> None:
+    lines = [
+        x for k in range(5) for x in (stamped(k, "VDVBW,,,V,8.0,0.1,A"), stamped(k, "VWVHW,,,,,5.0,N,,"))
+    ]
+    read = read_recording(write(tmp_path / "log.txt", lines))
+    assert read.water is not None and read.ground is not None
+    assert (read.water.what, read.ground.what) == ("VWVHW", "VDVBW")
