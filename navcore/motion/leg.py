@@ -16,6 +16,8 @@ DEFAULT_TURN_RATE_DPS = 1.0
 DEFAULT_DIVE = 0.5
 """Mean vertical speed of a change of depth when none is given, m/s."""
 _SAME_HEADING_DEG = 1e-6
+_SAME = 1e-9
+"""Values whose difference is a smaller part of them, or of 1 m or 1 m/s, are the same: it is rounding."""
 
 
 class Leg(EitherUnit):
@@ -120,7 +122,7 @@ def change_of_speed(leg: Leg, speed: float) -> Change:
     if leg.speed is None:
         amount = (leg.accel_mps2 or 0.0) * leg.duration_s
         return Change(amount, leg.duration_s if amount else 0.0)
-    amount = leg.speed - speed
+    amount = _difference(leg.speed, speed)
     if amount == 0.0:
         return Change(0.0, 0.0)
     rate = DEFAULT_ACCELERATION if leg.accel_mps2 is None else abs(leg.accel_mps2)
@@ -135,7 +137,7 @@ def change_of_speed(leg: Leg, speed: float) -> Change:
 
 def change_of_depth(leg: Leg, depth: float) -> Change:
     """Change of depth that a leg asks for, from a depth in m."""
-    amount = 0.0 if leg.depth_m is None else leg.depth_m - depth
+    amount = 0.0 if leg.depth_m is None else _difference(leg.depth_m, depth)
     if amount == 0.0:
         return Change(0.0, 0.0)
     rate = DEFAULT_DIVE if leg.dive_mps is None else leg.dive_mps
@@ -163,11 +165,23 @@ def change_of_heading(leg: Leg, heading_deg: float) -> Change:
     return change._replace(amount=amount * DEG)
 
 
+def _difference(goal: float, present: float) -> float:
+    """Change from one value to another; 0 where rounding alone tells them apart.
+
+    Examples
+    --------
+    >>> _difference(0.3, 0.1 + 0.2), _difference(0.31, 0.3) > 0.0
+    (0.0, True)
+    """
+    change = goal - present
+    return 0.0 if abs(change) <= _SAME * max(abs(goal), 1.0) else change
+
+
 def _turn_deg(difference: float, turn: float | None) -> float:
     """Turn to a heading: by the shorter way (starboard when both are equal), or to the side of ``turn``."""
     shorter = difference - 360.0 * math.floor(difference / 360.0 + 0.5)
-    if abs(shorter) < _SAME_HEADING_DEG:
-        return shorter
+    if abs(shorter) < _SAME_HEADING_DEG:  # rounding of the headings, which is no turn
+        return 0.0
     if abs(abs(shorter) - 180.0) < _SAME_HEADING_DEG:
         shorter = 180.0
     if turn is not None and turn * shorter < 0.0:

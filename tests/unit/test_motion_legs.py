@@ -9,7 +9,7 @@ import pytest
 from navcore.foundation.earth import SPHERE, WGS84, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion.course import lay_course
+from navcore.motion.course import COURSE_CHANGE, COURSE_TIME, SPEED_CHANGE, SPEED_TIME, lay_course
 from navcore.motion.legs import LegsMotion
 from navcore.motion.truth import AE, AN, HEADING, HEADING_RATE, LAT, LON, PITCH, ROLL, VE, VN, Site
 
@@ -336,3 +336,19 @@ def test_near_the_pole_nodes_draw_together() -> None:
     tropical = lay_course(legs, 3600.0, Site(0.0, 0.0, 0.0), WGS84)
     assert tropical.nodes.shape[0] == 61
     assert polar.nodes.shape[0] > 1000
+
+
+@pytest.mark.parametrize("heading", [*range(7, 360, 31), 60, 123.456, -60])
+def test_what_a_leg_keeps_is_no_change_however_it_is_rounded(heading: float) -> None:
+    knots = 10.0 * heading / 360.0
+    turning = {"duration_s": 500.0, "heading_deg": heading, "speed_kn": knots, "depth_m": 0.3}
+    kept = {"duration_s": 500.0, "heading_deg": heading, "speed_mps": knots * KNOT, "depth_m": 0.3}
+    motion = LegsMotion(
+        leg=[{"duration_s": 100.0, "depth_m": 0.1}, turning, kept, turning],
+        repeat=5,
+        repeat_from=1,
+    )
+    fastest = max(frequency for _, frequency in motion.calm_frequencies())
+    assert fastest < 1.0
+    assert not motion.table()[2:, [SPEED_CHANGE, SPEED_TIME, COURSE_CHANGE, COURSE_TIME]].any()
+    assert not motion.depths()[2:, 2:].any()
