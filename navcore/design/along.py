@@ -1,9 +1,12 @@
-"""The transient error budget along a scenario's motion: P(t) of every source by discretised steps.
+"""The transient error budget along a scenario's motion: errors of every source by discretised steps.
 
-The random processes are carried as covariances, one matrix a source; the constants as responses, one column
-each. The law must be known in advance: `constant` or `schedule`, with outages of the log (theory.md 15).
+The random processes are carried as covariances, one matrix a source; constants and errors of a known shape as
+responses, one column each. What the scenario gives as a number adds up with its sign; what it gives by a
+standard deviation adds up in variance. The law must be known in advance: `constant` or `schedule`, with
+outages of the log (theory.md 15).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,24 +41,56 @@ _STATES = np.array([4, 5, 6, 0, 1, 2, 3])
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """Variances of one method along the run.
+    """Errors of one method along the run, by source, for `COMPONENTS`; each array has the shape (k + 1, 7).
 
     Attributes
     ----------
     t_s : ndarray, shape (k + 1,)
         Times, s.
-    variance : dict of ndarray, shape (k + 1, 7)
-        Of each source that does anything, for `COMPONENTS`, in their units squared.
+    random : dict of ndarray
+        Variances of the sources that are known by a standard deviation, in the components' units squared.
+    given : dict of ndarray
+        Errors that follow from the sources that the scenario gives as numbers.
     """
 
     t_s: np.ndarray
-    variance: dict[str, np.ndarray]
+    random: dict[str, np.ndarray]
+    given: dict[str, np.ndarray]
+
+    @property
+    def variance(self) -> dict[str, np.ndarray]:
+        """Mean square of each source by itself."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            squares = {source: error**2 for source, error in self.given.items()}
+            return self.random | {
+                source: square + self.random.get(source, 0.0) for source, square in squares.items()
+            }
 
     @property
     def total(self) -> np.ndarray:
-        """Variance of all sources together, shape (k + 1, 7)."""
+        """Mean square of all sources together."""
+        return self.scaled({})
+
+    @property
+    def given_total(self) -> np.ndarray | None:
+        """Mean square of what follows from all given numbers together; None where fewer than two act."""
+        if len(self.given) < 2:
+            return None
         with np.errstate(over="ignore", invalid="ignore"):
-            return sum(self.variance.values(), np.zeros((len(self.t_s), len(COMPONENTS))))
+            return sum(self.given.values()) ** 2
+
+    def scaled(self, sizes: Mapping[str, float]) -> np.ndarray:
+        """Mean square of all sources together when some have another size.
+
+        Parameters
+        ----------
+        sizes : mapping from str to float
+            Size of a source over its present one; 1 for a source that is not named.
+        """
+        none = np.zeros((len(self.t_s), len(COMPONENTS)))
+        with np.errstate(over="ignore", invalid="ignore"):
+            error = sum((sizes.get(source, 1.0) * one for source, one in self.given.items()), none)
+            return sum((sizes.get(source, 1.0) ** 2 * one for source, one in self.random.items()), error**2)
 
 
 def along(
@@ -65,7 +100,7 @@ def along(
     model: StochasticModel,
     columns: tuple[Column, ...] | None = None,
 ) -> Along:
-    """Variances of each source along the scenario's motion.
+    """Errors of each source along the scenario's motion.
 
     Parameters
     ----------
@@ -78,7 +113,7 @@ def along(
     model : StochasticModel
         The sources.
     columns : tuple of Column, optional
-        Of `navcore.design.constants.shared_columns`, which is the same for all methods.
+        Of `navcore.design.constants.shared_columns`, which are the same for all methods.
     """
     forms, stage = law_stages(method, scenario.omega_s, course)
     course, stage = _with_stages(course, stage)
@@ -90,12 +125,18 @@ def along(
     with np.errstate(over="ignore", invalid="ignore"):  # an unstable loop: told by who reads the variances
         tables = _tables(loops, stage, model, course)
         random = _random(loop, model, course, tables)
-        known = _known(loop, course, tables, (*shared, *own_columns(method, course, loop)))
+        columns = (*shared, *own_columns(method, course, loop))
+        responses = _responses(loop, course, tables, columns)
         scale = np.ones((len(course.edges), len(COMPONENTS)))
-        scale[:, 5:] = course.metres**2
-        variance = {source: random[:, k] * scale for k, source in enumerate(RANDOM_SOURCES)}
-        variance |= {source: values * scale for source, values in known.items()}
-    return Along(course.t_s, variance)
+        scale[:, 5:] = course.metres
+        variances = {source: random[:, k] * scale**2 for k, source in enumerate(RANDOM_SOURCES)}
+        given: dict[str, np.ndarray] = {}
+        for column, response in zip(columns, responses, strict=True):
+            if column.given:
+                given[column.source] = given.get(column.source, 0.0) + response * scale
+            else:
+                variances[column.source] = variances.get(column.source, 0.0) + (response * scale) ** 2
+    return Along(course.t_s, variances, given)
 
 
 def _with_stages(course: Course, stage: np.ndarray) -> tuple[Course, np.ndarray]:
@@ -237,12 +278,12 @@ def _joint(
     return A, Q, places.reshape(-1)
 
 
-def _known(
+def _responses(
     loop: LoopModel, course: Course, tables: _Tables, columns: tuple[Column, ...]
-) -> dict[str, np.ndarray]:
-    """Squares of the responses, summed by source; shape (k + 1, 7) each."""
+) -> list[np.ndarray]:
+    """Errors that follow from each column, shape (k + 1, 7) each; in radians for the position."""
     if not columns:
-        return {}
+        return []
     count, k = len(columns), len(course.kind)
     W = np.empty((k, INPUTS, count))
     X = np.zeros((loop.states, count))
@@ -259,10 +300,7 @@ def _known(
             X[loop.networks] = 0.0
         X = tables.Phi[kind] @ X + drive[i]
         out[i + 1] = X[_STATES]
-    squares: dict[str, np.ndarray] = {}
-    for j, column in enumerate(columns):
-        squares[column.source] = squares.get(column.source, 0.0) + out[:, :, j] ** 2
-    return squares
+    return [out[:, :, j] for j in range(count)]
 
 
 def _rest(loop: LoopModel, X: np.ndarray, first: np.ndarray, by_error: np.ndarray) -> None:

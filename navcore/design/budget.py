@@ -16,7 +16,7 @@ from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
 from navcore.design.steady import instability, loops_of, steady_budget
 from navcore.design.unmodelled import unmodelled_warnings
-from navcore.design.untold import untold_squares
+from navcore.design.untold import untold_errors
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
@@ -89,8 +89,8 @@ def budget(
             if growth:
                 result = _diverged(method, "covariance", (growth, *left_out))
             else:
-                variances = ship.along(method)
-                series = Series(variances.t_s, variances.variance, variances.total)
+                found = ship.along(method)
+                series = Series(found.t_s, found.variance, found.total, found.given_total)
                 result = _of_series(method, "covariance", series, left_out)
         report(index, 1.0)
         return replace(_with_growth(ship, result, method), reads_log=method.reads_log)
@@ -118,12 +118,14 @@ def _of_filter(scenario: Scenario, method: Method, own: Series, untold: bool) ->
     """Covariance of truth and estimate: the filter's own, and what errors do that it is not told of."""
     if not untold:
         return own, Text("its own covariance, which is the floor: it is told of every error of this scenario")
-    sources = {name: values for name, values in untold_squares(scenario, method, own.t_s).items()}
-    total = own.total + sum(sources.values())
+    errors = untold_errors(scenario, method, own.t_s)
+    total = own.total + sum(errors.values()) ** 2
+    sources = {name: error**2 for name, error in errors.items()}
     note = Text(
         "its own covariance, and what it is not told of: {sources}", sources=", ".join(sources) or "nothing"
     )
-    return Series(own.t_s, {"told": own.total, **sources}, total), note
+    given = sum(errors.values()) ** 2 if len(errors) > 1 else None
+    return Series(own.t_s, {"told": own.total, **sources}, total, given), note
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:
@@ -164,7 +166,8 @@ def _of_series(method: Method, kind: Shown, series: Series, warnings: tuple[str,
         return _diverged(method, kind, warnings)
     total = entry_of(series.t_s, series.total)
     sources = {name: entry_of(series.t_s, values) for name, values in series.sources.items()}
-    return MethodBudget(method.name, kind, total, sources, warnings=warnings, series=series)
+    given = None if series.given is None else entry_of(series.t_s, series.given)
+    return MethodBudget(method.name, kind, total, sources, given=given, warnings=warnings, series=series)
 
 
 def _diverged(method: Method, kind: Shown, warnings: tuple[str, ...]) -> MethodBudget:

@@ -128,7 +128,7 @@ def course(scenario: Scenario, most: int = MOST_INTERVALS, extra_s: tuple[float,
     half = table_of(coefficients_of(scenario, count, truth_step).half)
     places = np.minimum(np.rint(edges * (step_s / (0.5 * truth_step))).astype(np.int64), 2 * count)
     level = scenario.run.fidelity == "channel"
-    turns = np.eye(3).reshape(1, 9) if level else _attitudes(truth.values)
+    turns = np.eye(3).reshape(1, 9) if level else attitudes(truth.values)
     mean_half, turn = _means(half, places), _means(turns, places)
     works, lies = (
         state[edges[:-1]] if len(state) > 1 else np.full(len(edges) - 1, state[0])
@@ -188,7 +188,7 @@ def _edges(
     return edges.astype(np.int64)
 
 
-def _attitudes(values: np.ndarray) -> np.ndarray:
+def attitudes(values: np.ndarray) -> np.ndarray:
     """C_b^n = Rz(-heading) Rx(pitch) Ry(roll) of each row of truth, row by row; shape (n, 9)."""
     angles = values[:, [PITCH, ROLL, HEADING]]
     if np.ptp(angles, axis=0).max() == 0.0:

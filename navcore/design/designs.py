@@ -122,7 +122,7 @@ def designs(
     stopped = early or (cancelled is not None and cancelled())
     if not found:
         raise _too_early(seeds)
-    ship = Ship(scenario, True, TUNING_INTERVALS)
+    ship = Ship(scenario, True, TUNING_INTERVALS, drawn=True)
     shares = tuple(sorted(shares_of(ship, methods, found), key=lambda share: share.order))
     result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
     return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))

@@ -70,7 +70,7 @@ def total_of(entries: Iterable[Entry]) -> Figures:
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Variances along the run, for bands under the error curves.
+    """Mean squares along the run, for bands under the error curves.
 
     Attributes
     ----------
@@ -78,11 +78,15 @@ class Series:
     sources : dict of ndarray, shape (m, 7)
         For `navcore.quantities.COMPONENTS`, in their units squared; empty where the method has none.
     total : ndarray, shape (m, 7)
+    given : ndarray, shape (m, 7), or None
+        Mean square of what follows from the sources that are given as numbers, together and with their signs;
+        None where fewer than two act.
     """
 
     t_s: np.ndarray
     sources: Mapping[str, np.ndarray]
     total: np.ndarray
+    given: np.ndarray | None = None
 
 
 def entry_of(t_s: np.ndarray, variance: np.ndarray) -> Entry:

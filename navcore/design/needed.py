@@ -1,8 +1,8 @@
 """Figures that would have to be better where no method meets the limits (design.md, from limits to designs).
 
 The covariance along the run gives the parts of each limited quantity by source: a figure that is k times
-better leaves 1 / k^2 of its part of the variance. Runs with the better figures correct k, for a largest value
-is not the same multiple of the deviation whether noise or a bias makes it.
+better leaves 1 / k of the errors that follow from it. Runs with the better figures correct k, for a largest
+value is not the same multiple of the deviation whether noise or a bias makes it.
 """
 
 import math
@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from navcore.design.along import Along
 from navcore.design.measures import Setting
 from navcore.design.seeds import no_covariance
 from navcore.design.shares import Limit, Share, share_of
@@ -80,7 +79,7 @@ def needed(
         For each limit that is missed, where there are several: the figures that are enough by themselves.
         Least factor first; a figure is left out where no factor up to `MOST` is enough.
     """
-    ship, fields = Ship(scenario), fields_of_sources(scenario)
+    ship, fields = Ship(scenario, drawn=True), fields_of_sources(scenario)
     best: dict[tuple[str | None, tuple[str, ...]], tuple[float, _Parts]] = {}
     for share in shares:
         for parts in _parts(ship, share, fields):
@@ -111,15 +110,16 @@ class _Parts:
     figures: tuple[str, ...]
     share: Share
     limits: Sequence[Limit]
-    t_s: np.ndarray
-    total: np.ndarray
-    part: np.ndarray
+    along: Along
+    sources: tuple[str, ...]
     ratios: list[float]
 
     def foretold(self, limit: Limit, factor: float) -> float:
         """Value of a quantity, SI, by the covariance with better figures."""
-        left = np.maximum(self.total - self.part * (1.0 - factor**-2), 0.0)
-        return foretold(QUANTITIES[limit.requirement.quantity], self.t_s, left, begins_s(limit.requirement))
+        left = self.along.scaled(dict.fromkeys(self.sources, 1.0 / factor))
+        return foretold(
+            QUANTITIES[limit.requirement.quantity], self.along.t_s, left, begins_s(limit.requirement)
+        )
 
     def correct(self, factor: float, ratios: Sequence[float]) -> None:
         """Take over medians over their limits of runs with figures that are better by a factor."""
@@ -166,9 +166,8 @@ def _parts(ship: Ship, share: Share, fields: Mapping[str, str]) -> Iterator[_Par
     for quantity, limits, ways in wanted:
         for group in dict.fromkeys(ways):
             names = tuple(dict.fromkeys(fields[source] for source in group))
-            part = sum((along.variance[source] for source in group), np.zeros_like(along.total))
             ratios = [limit.ratio for limit in limits]
-            yield _Parts(quantity, names, share, limits, along.t_s, along.total, part, ratios)
+            yield _Parts(quantity, names, share, limits, along, group, ratios)
 
 
 def _corrected(ship: Ship, parts: _Parts, factor: float, cancelled: Callable[[], bool] | None) -> float:

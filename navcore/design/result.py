@@ -32,6 +32,9 @@ class MethodBudget:
         Each source; with ``seeds`` there are none.
     random : Figures or None
         Steady state only: the random sources together, without biases.
+    given : Entry or None
+        Along the run only: the sources that the scenario gives as numbers, together and with their signs;
+        None where fewer than two act.
     warnings : tuple of str
         What is to be heeded.
     series : Series or None
@@ -47,6 +50,7 @@ class MethodBudget:
     total: Entry
     sources: Mapping[str, Entry]
     random: Figures | None = None
+    given: Entry | None = None
     warnings: tuple[str, ...] = ()
     series: Series | None = None
     diverged: bool = False
@@ -72,6 +76,7 @@ class MethodBudget:
             **self.total.as_dict(),
             **self._random(),
             "sources": {name: entry.as_dict() for name, entry in self.sources.items()},
+            **({} if self.given is None else {"given": self.given.as_dict()}),
             "warnings": list(self.warnings),
         }
 
@@ -173,6 +178,8 @@ class Budget(Answer):
         rows = [self._row(f"  {name}", entry.rms) for name, entry in method.sources.items()]
         if method.random is not None:
             rows.append(self._row(Text("  all that is random"), method.random))
+        if method.given is not None:
+            rows.append(self._row(Text("  given numbers, with their signs"), method.given.rms))
         rows.append(self._row(Text("  all"), method.total.rms))
         times = self.times_floor(method)
         if any(value is not None for value in times.values()):

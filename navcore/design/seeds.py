@@ -4,13 +4,18 @@ from collections.abc import Callable
 
 import numpy as np
 
+from navcore.design.course import attitudes
+from navcore.engine.ensemble import drawn
+from navcore.engine.environment import truth_of
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.law.combination import realisation_of
 from navcore.quantities import COMPONENTS
+from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.start import aligned_errors, independent_errors
 
 SEEDS = 24
 
@@ -48,6 +53,17 @@ def alone(scenario: Scenario, method: Method, later: int = 0) -> Scenario:
     return scenario.model_copy(update=update)
 
 
+def _started(scenario: Scenario, method: Method) -> Scenario:
+    """Return a scenario with one method on the linear error model, which begins where its alignment ends."""
+    if scenario.alignment.kind != "compass":
+        return alone(scenario, method)
+    attitude = attitudes(truth_of(scenario, 1, scenario.run.step_s).values[:1]).reshape(3, 3)
+    eps, nabla = (attitude @ triad.constant for triad in (scenario.imu.gyro(), scenario.imu.accel()))
+    start = independent_errors(scenario, np.array(scenario.initial_error.state()))
+    left = InitialError.of_state(start + aligned_errors(scenario, eps, nabla))
+    return alone(scenario, method).model_copy(update={"initial_error": left})
+
+
 def seed_variance(
     scenario: Scenario,
     method: Method,
@@ -58,7 +74,8 @@ def seed_variance(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean squares of a method's errors over several seeds, on the linear error model.
 
-    Biases and initial errors stay as the scenario gives them.
+    A bias or initial error with a stated standard deviation is drawn for each seed; one that is given as a
+    number keeps it. After an alignment a run begins with what the biases leave of it.
 
     Parameters
     ----------
@@ -91,7 +108,7 @@ def seed_variance(
     for k in range(seeds):
         if k and cancelled is not None and cancelled():
             break
-        result = simulate(alone(scenario, method, first + k)).methods[0]
+        result = simulate(_started(drawn(scenario, first + k, stated_only=True), method)).methods[0]
         if result.status == "diverged":
             raise InputError(
                 Fault(

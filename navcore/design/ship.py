@@ -27,11 +27,15 @@ class Ship:
         Root mean squares over the scenario's run, else in the steady state at rest.
     intervals : int
         Of the run at most (`navcore.design.course.course`).
+    drawn : bool
+        Biases and initial errors count as they are drawn for the seeds of a design, by their standard
+        deviation; else those that are given as numbers count as they are in a run.
     """
 
     scenario: Scenario
     along_run: bool = True
     intervals: int = MOST_INTERVALS
+    drawn: bool = False
 
     @cached_property
     def model(self) -> StochasticModel:
@@ -47,7 +51,7 @@ class Ship:
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """Responses that all methods share."""
-        return shared_columns(self.scenario, self.course, self.model)
+        return shared_columns(self.scenario, self.course, self.model, self.drawn)
 
     def along(self, method: Method) -> Along:
         """Variances of each source along the run, for a method whose law is known in advance."""

@@ -1,17 +1,7 @@
 """Standard deviations of constants: which field states each of them, and which are stated in no way."""
 
 from navcore.scenario.model import Scenario
-
-_STATED = (
-    ("gyro_bias", "imu", "gyro_bias_std_dph", "gyro_bias_dph"),
-    ("accel_bias", "imu", "accel_bias_std_ug", "accel_bias_ug"),
-    ("log_bias", "reference", "bias_std_mps", "bias_mps"),
-    ("initial_tilt", "initial_error", "level_std_arcmin", "attitude_arcmin"),
-    ("initial_heading", "initial_error", "heading_std_arcmin", "attitude_arcmin"),
-    ("initial_velocity", "initial_error", "velocity_std_mps", "velocity_mps"),
-    ("initial_position", "initial_error", "position_std_arcsec", "position_arcsec"),
-)
-"""Source of the error budget, block, field of a standard deviation, and field of the numbers in its place."""
+from navcore.scenario.stochastic import CONSTANTS
 
 
 def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
@@ -25,7 +15,7 @@ def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
         True for the steady state, which no initial error reaches.
     """
     fields = []
-    for _, block, deviation, number in _STATED:
+    for _, block, deviation, number in CONSTANTS:
         settings = getattr(scenario, block)
         recorded = block == "imu" and settings.file is not None
         if recorded or (block == "reference" and settings.kind != "log"):
@@ -40,7 +30,7 @@ def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
 def fields_of_sources(scenario: Scenario) -> dict[str, str]:
     """Field of the scenario that gives the size of each source of the error budget."""
     fields = {}
-    for source, block, deviation, number in _STATED:
+    for source, block, deviation, number in CONSTANTS:
         given = getattr(getattr(scenario, block), deviation) is not None
         fields[source] = f"{block}.{deviation if given else number}"
     for block, settings in {"imu": scenario.imu, "reference": scenario.reference}.items():

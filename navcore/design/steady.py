@@ -66,7 +66,7 @@ def _steady_loop(
         )
     sources = parts | constant_parts(channel, model)
     total, random = Entry(total_of(sources.values())), total_of(parts.values())
-    return MethodBudget(method.name, "steady", total, sources, random, tuple(warnings))
+    return MethodBudget(method.name, "steady", total, sources, random, warnings=tuple(warnings))
 
 
 def _no_steady_state(
@@ -91,7 +91,7 @@ def _steady_filter(
     random = Figures(floor.tilt_rad, floor.velocity_mps)
     sources |= _left_by_filter(model, scenario.omega_s)
     total = Entry(total_of(sources.values()))
-    return MethodBudget(method.name, "steady", total, sources, random, tuple(warnings))
+    return MethodBudget(method.name, "steady", total, sources, random, warnings=tuple(warnings))
 
 
 def _left_by_filter(model: StochasticModel, omega_s: float) -> dict[str, Entry]:

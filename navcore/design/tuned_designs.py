@@ -116,7 +116,7 @@ def tuned_methods(
         results = outcomes(one, methods, numbers, part, cancelled)
         if not results:
             return [found[0] for _, found in candidates], left_out
-        shares.append(shares_of(Ship(one, True, INTERVALS), methods, results))
+        shares.append(shares_of(Ship(one, True, INTERVALS, drawn=True), methods, results))
     best, at = [], 0
     for _, found in candidates:
         places = range(at, at + len(found))
@@ -155,13 +155,13 @@ def _candidates(
         present += _searched(other, fields, cancelled, NO_SPREAD)
     if fields and spread.scenarios:
         present += _searched(other, fields, cancelled, spread)
-    ship = Ship(other, True, INTERVALS)
+    ship = Ship(other, True, INTERVALS, drawn=True)
     stable = {method.network: method for method in present if not Setting(ship, method).instability}
     if not stable:
         return [], Setting(ship, default).instability
     ranked = sorted(stable.values(), key=lambda method: _largest_ratio(Setting(ship, method)))
     if spread.scenarios:
-        ships = [ship, *(Ship(one, True, INTERVALS) for one in spread.scenarios)]
+        ships = [ship, *(Ship(one, True, INTERVALS, drawn=True) for one in spread.scenarios)]
         robust = sorted(ranked, key=lambda m: spread.of_ratios([ratio_at(one, m) for one in ships]))
         ranked = list(dict.fromkeys((robust[0], ranked[0], *robust[1:])))
     return ranked[:_CANDIDATES], ""
@@ -189,7 +189,7 @@ class _ByLimits(Search):
 
     def __init__(self, scenario: Scenario, varied: Sequence[Any], spread: Spread) -> None:
         others = (one.model_copy(update={"method": scenario.method}) for one in spread.scenarios)
-        ships = [Ship(one, True, INTERVALS) for one in (scenario, *others)]
+        ships = [Ship(one, True, INTERVALS, drawn=True) for one in (scenario, *others)]
         super().__init__(ships, varied, read_objective("tilt_rms"), ())
         self._spread = spread
 

@@ -20,8 +20,8 @@ from navcore.scenario.model import Scenario
 from navcore.sensors.rounding import DITHERED
 
 
-def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[str, np.ndarray]:
-    """Squares of the filter's response to each error of a known shape, by source.
+def untold_errors(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[str, np.ndarray]:
+    """Response of the filter to each error of a known shape, by source; they add up with their signs.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[
     Returns
     -------
     dict of ndarray, shape (m, 7)
-        For `navcore.quantities.COMPONENTS`, squared.
+        Errors for `navcore.quantities.COMPONENTS`.
     """
     told = alone(scenario, method)
     step_s = told.run.step_s
@@ -47,7 +47,7 @@ def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[
     labels = {part.label: part.source for part in parts}
     if method.event:
         labels.setdefault(Text("log events"), "log_events")
-    gains, squares = Gains(), {}
+    gains, errors = Gains(), {}
     for label, source in labels.items():
         quiet = only(told, label)
         env = environment(quiet)
@@ -56,5 +56,5 @@ def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[
         )
         rows = run.recorder.rows[: int(run.recorder.cursor["row"]), :QUANTITIES]
         at = np.minimum(np.rint(t_s / step_s).astype(int), len(rows) - 1)
-        squares[source] = rows[at, : len(COMPONENTS)] ** 2
-    return squares
+        errors[source] = rows[at, : len(COMPONENTS)]
+    return errors

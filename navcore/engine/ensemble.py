@@ -23,7 +23,7 @@ from navcore.mechanization.error_batch import WIDTH, ErrorModelBatch
 from navcore.mechanization.recorder import FINAL, POSITION
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
-from navcore.scenario.stochastic import stochastic_model
+from navcore.scenario.stochastic import CONSTANTS, stated_constants, stochastic_model
 
 SEARCHED = 1_000_000
 """Added to the seed of a run by what a search draws, so that it never meets what judges it."""
@@ -50,29 +50,55 @@ class Outcome:
     final_m: float
 
 
-def drawn(scenario: Scenario, number: int) -> Scenario:
-    """Return the scenario of the seed ``run.seed + number``, with constants drawn for it."""
+def drawn(scenario: Scenario, number: int, *, stated_only: bool = False) -> Scenario:
+    """Return the scenario of the seed ``run.seed + number``, with constants drawn for it.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+    number : int
+        Added to its seed.
+    stated_only : bool
+        Draw only biases and initial errors whose standard deviation the scenario states; the others keep the
+        numbers that it gives. By default all are drawn (`stochastic_model`).
+    """
     seed = (scenario.run.seed + number) % 2**31
     model = stochastic_model(scenario)
     generator = np.random.default_rng([_STREAM, seed])
     gyro, accel = generator.standard_normal((2, 3)) * (model.gyro_bias, model.accel_bias)
     log = generator.standard_normal(2) * model.log_bias
     dv_e, dv_n, lat, lon, phi_e, phi_n, phi_u = (generator.standard_normal(7) * model.initial).tolist()
-    start = {
-        "attitude_arcmin": (phi_e / ARCMIN, phi_n / ARCMIN, phi_u / ARCMIN),
-        "velocity_mps": (dv_e, dv_n),
-        "position_arcsec": (lat / ARCSEC, lon / ARCSEC),
+    drawn_values = {
+        "gyro_bias": tuple((gyro / DEG_PER_HOUR).tolist()),
+        "accel_bias": tuple((accel / MICRO_G).tolist()),
+        "log_bias": tuple(log.tolist()),
+        "initial_tilt": (phi_e / ARCMIN, phi_n / ARCMIN),
+        "initial_heading": (phi_u / ARCMIN,),
+        "initial_velocity": (dv_e, dv_n),
+        "initial_position": (lat / ARCSEC, lon / ARCSEC),
     }
-    biases = {
-        "gyro_bias_dph": tuple((gyro / DEG_PER_HOUR).tolist()),
-        "accel_bias_ug": tuple((accel / MICRO_G).tolist()),
-    }
+    stated = stated_constants(scenario) if stated_only else frozenset(drawn_values)
+    numbers = {source: getattr(getattr(scenario, block), field) for source, block, _, field in CONSTANTS}
+    numbers["initial_tilt"], numbers["initial_heading"] = (
+        numbers["initial_tilt"][:2],
+        numbers["initial_heading"][2:],
+    )
+    made = numbers | {source: drawn_values[source] for source in stated}
     return scenario.model_copy(
         update={
             "run": scenario.run.model_copy(update={"seed": seed}),
-            "imu": scenario.imu.model_copy(update=biases),
-            "reference": scenario.reference.model_copy(update={"bias_mps": tuple(log.tolist())}),
-            "initial_error": scenario.initial_error.model_copy(update=start),
+            "imu": scenario.imu.model_copy(
+                update={"gyro_bias_dph": made["gyro_bias"], "accel_bias_ug": made["accel_bias"]}
+            ),
+            "reference": scenario.reference.model_copy(update={"bias_mps": made["log_bias"]}),
+            "initial_error": scenario.initial_error.model_copy(
+                update={
+                    "attitude_arcmin": (*made["initial_tilt"], *made["initial_heading"]),
+                    "velocity_mps": made["initial_velocity"],
+                    "position_arcsec": made["initial_position"],
+                }
+            ),
         }
     )
 

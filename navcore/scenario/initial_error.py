@@ -1,5 +1,8 @@
 """Block ``initial_error`` of a scenario: where navigation starts from, and how well that is known."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from typing import Annotated
 
 from navcore.foundation.parameters import Parameters, bounded, quantity, vector_quantity
@@ -60,6 +63,16 @@ class InitialError(Parameters):
             _times(self.heading_std_arcmin, ARCMIN),
         ]
         return [abs(x) if std is None else std for x, std in zip(self.state(), given, strict=True)]
+
+    @classmethod
+    def of_state(cls, state: Iterable[float]) -> InitialError:
+        """Make the block from seven error states in SI, in the order of `state`; nothing is checked."""
+        dv_e, dv_n, lat, lon, phi_e, phi_n, phi_u = (float(x) for x in state)
+        return cls.model_construct(
+            attitude_arcmin=(phi_e / ARCMIN, phi_n / ARCMIN, phi_u / ARCMIN),
+            velocity_mps=(dv_e, dv_n),
+            position_arcsec=(lat / ARCSEC, lon / ARCSEC),
+        )
 
     def state(self) -> list[float]:
         """Seven error states in SI: dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U."""

@@ -12,6 +12,17 @@ from navcore.scenario.model import Scenario
 RANDOM_SOURCES = ("gyro_white", "gyro_drift", "accel_white", "accel_drift", "log_white", "log_drift")
 """Sources that are random processes, in the order of every table; the others are random constants."""
 
+CONSTANTS = (
+    ("gyro_bias", "imu", "gyro_bias_std_dph", "gyro_bias_dph"),
+    ("accel_bias", "imu", "accel_bias_std_ug", "accel_bias_ug"),
+    ("log_bias", "reference", "bias_std_mps", "bias_mps"),
+    ("initial_tilt", "initial_error", "level_std_arcmin", "attitude_arcmin"),
+    ("initial_heading", "initial_error", "heading_std_arcmin", "attitude_arcmin"),
+    ("initial_velocity", "initial_error", "velocity_std_mps", "velocity_mps"),
+    ("initial_position", "initial_error", "position_std_arcsec", "position_arcsec"),
+)
+"""Constant sources of the budget: name, block, field of the standard deviation, field of the numbers."""
+
 
 @dataclass(frozen=True)
 class Drift:
@@ -94,6 +105,15 @@ class StochasticModel:
     def silent(self) -> bool:
         """Whether no random process is on at all."""
         return not (self.figures.inertial or self.figures.log)
+
+
+def stated_constants(scenario: Scenario) -> frozenset[str]:
+    """Constant sources whose standard deviation is stated; the others are what their numbers say."""
+    return frozenset(
+        source
+        for source, block, deviation, _ in CONSTANTS
+        if getattr(getattr(scenario, block), deviation) is not None
+    )
 
 
 def stochastic_model(scenario: Scenario) -> StochasticModel:

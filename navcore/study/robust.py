@@ -170,7 +170,7 @@ def robust_designs(
         results = outcomes(one, methods, range(seeds), part, cancelled)
         if len(results) < seeds:
             raise StoppedError(Fault("", "--over", study.title, Text("stopped before all points were run")))
-        rows.append(shares_of(Ship(one, True, TUNING_INTERVALS), methods, results))
+        rows.append(shares_of(Ship(one, True, TUNING_INTERVALS, drawn=True), methods, results))
     shares = (
         _robust(k, rows, seeds, Spread(quantile=quantile), lambda at: plan.values(places[at]))
         for k in range(len(methods))
@@ -215,7 +215,7 @@ def _laid_over(scenario: Scenario, study: Study, seeds: int, quantile: float) ->
 def _searched(scenario: Scenario, points: Sequence[Scenario]) -> Iterator[Scenario]:
     """A few points from the easiest to the hardest, by what a common network makes of the limits there."""
     common = default_method(scenario, "classic2")
-    ordered = sorted(points, key=lambda point: ratio_at(Ship(point, True, INTERVALS), common))
+    ordered = sorted(points, key=lambda point: ratio_at(Ship(point, True, INTERVALS, drawn=True), common))
     for place in np.unique(np.linspace(0, len(ordered) - 1, _SEARCHED).round().astype(int)):
         yield ordered[place]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -84,15 +84,6 @@ class Part(ErrorPart):
     def has_shape(self) -> bool:
         """Whether the error budget knows it by the numbers of the scenario as they stand."""
         return self.shape is not None or bool(self.coupling.any())
-
-    def elements(self) -> Iterator[Part]:
-        """Yield the part with each element of its coupling by itself, one response of the budget each."""
-        if self.shape is not None:
-            yield self
-        for place in zip(*np.nonzero(self.coupling), strict=True):
-            single = np.zeros((3, 3))
-            single[place] = self.coupling[place]
-            yield replace(self, coupling=single, shape=None)
 
 
 class ImuTerm(Parameters):

@@ -55,6 +55,11 @@ class Triad:
         return NO_DRIFT if drift is None else drift.markov
 
     @property
+    def constant(self) -> np.ndarray:
+        """Constant errors that the scenario gives, shape (3,)."""
+        return sum((part.constant for part in self._all), np.zeros(3))
+
+    @property
     def deviation(self) -> np.ndarray:
         """Standard deviations of the constant errors, shape (3,)."""
         return np.sqrt(sum((part.deviation**2 for part in self._all), np.zeros(3)))

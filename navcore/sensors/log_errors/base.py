@@ -33,8 +33,6 @@ class LogPart(ErrorPart):
         Velocity of the water over the ground, E and N: takes times (m,), returns (m, 2) or (1, 2).
     after : callable, optional
         Error of the finished reading, E and N: takes times (m,), returns (m, 2) or (1, 2).
-    responses : tuple of LogPart
-        What the error budget takes in place of the part where it is not the part itself.
     """
 
     scale: float = 0.0
@@ -44,17 +42,12 @@ class LogPart(ErrorPart):
     smoothing_s: float = 0.0
     water: Callable[[np.ndarray], np.ndarray] | None = None
     after: Callable[[np.ndarray], np.ndarray] | None = None
-    responses: tuple[LogPart, ...] = ()
 
     @property
     def has_shape(self) -> bool:
         """Whether the error budget knows it by the numbers of the scenario as they stand."""
         seconds = self.acceleration_s, self.turn_s, self.delay_s, self.smoothing_s
         return any((self.scale, *seconds, self.water, self.after))
-
-    def elements(self) -> Iterator[LogPart]:
-        """Yield the parts that make one response of the budget each."""
-        yield from self.responses or (self,)
 
     def smoothed(self, tau_s: float, interval_s: float) -> LogPart:
         """Return the part behind a filter y_k = e y_(k-1) + (1 - e) x_k with e = exp(-interval / tau).

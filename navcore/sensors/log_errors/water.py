@@ -92,26 +92,18 @@ class Water(LogTerm):
     )
 
     def parts(self) -> Iterator[LogPart]:
-        """Yield all; of the tide the phase is unknown beforehand: a sine and a cosine share its square."""
+        """Yield the steady current, those that hold for a time, and the tide."""
         current = LogPart(("current_mps",), "log_current", Text("current and tide"))
         if any(self.current_mps):
             current = replace(current, water=lambda time_s: np.array([self.current_mps]))
         tide = LogPart(("tide_mps",), "log_tide", Text("current and tide"))
         if any(self.tide_mps):
-            phases = 0.0, 0.5 * np.pi
-            tide = replace(
-                tide,
-                water=lambda time_s: self._tide(time_s, 1.0, self.tide_phase_deg * DEG),
-                responses=tuple(
-                    replace(tide, water=lambda time_s, phase=phase: self._tide(time_s, np.sqrt(0.5), phase))
-                    for phase in phases
-                ),
-            )
+            tide = replace(tide, water=self._tide)
         passing = LogPart(("current",), "log_current", Text("current and tide"))
         if any(any(current.current_mps) for current in self.current):
             passing = replace(passing, water=partial(current_velocity, self.current))
         yield from (current, passing, tide)
 
-    def _tide(self, time_s: np.ndarray, share: float, phase: float) -> np.ndarray:
-        angle = 2.0 * np.pi * time_s / (self.tide_period_h * HOUR) + phase
-        return np.sin(angle)[:, None] * (share * np.array(self.tide_mps))
+    def _tide(self, time_s: np.ndarray) -> np.ndarray:
+        angle = 2.0 * np.pi * time_s / (self.tide_period_h * HOUR) + self.tide_phase_deg * DEG
+        return np.sin(angle)[:, None] * np.array(self.tide_mps)
