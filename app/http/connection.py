@@ -1,6 +1,7 @@
 """One browser's connection: its session, its checked messages, its place among all others."""
 
 import asyncio
+import contextlib
 import fcntl
 import termios
 import time
@@ -8,23 +9,29 @@ from array import array
 from typing import Any
 
 from websockets.asyncio.server import ServerConnection
-from websockets.exceptions import ProtocolError
+from websockets.exceptions import ConnectionClosed, ProtocolError
 from websockets.frames import DATA_OPCODES, CloseCode, Frame, Opcode
+from websockets.protocol import State
 
 from navcore.foundation.text import Text
 from schuler_bench.http.frames import BadFrame, Gate
-from schuler_bench.http.limits import Limits
+from schuler_bench.http.limits import MIB, Limits
 from schuler_bench.http.places import Door, Places
 
 GAVE_UP_PLACE = Text("This page was idle and gave up its place.")
 """Reason with which an idle page is closed."""
 _COST_OF_PART = 5
 """A ping, a pong or a fragment counts as so many whole messages: a page sends hardly any."""
-_ABORT_S = 0.3
+_LAST_WORD_S, _MOST_DROPPED = 0.3, 16 * MIB
+"""So long, and so many bytes, the other side may go on sending while the last word is on its way to it."""
 
 
 class Connection(ServerConnection):
     """A websocket connection whose messages pass the gate.
+
+    It ends with a close frame of either side, a fault of the protocol, a refused request or an HTTP answer.
+    websockets would then read on until the other side closes the socket; here nothing that still comes is
+    taken, and the socket is closed: at once if nothing comes, else within `_LAST_WORD_S` and `_MOST_DROPPED`.
 
     Parameters
     ----------
@@ -57,7 +64,8 @@ class Connection(ServerConnection):
         self._asked = False
         self.gate: Gate | None = None
         self._limits, self._door, self._places = limits, door, places
-        self._dismissed = False
+        self._dismissed = self._ended = False
+        self._dropped = 0
         self._window_start_s = 0.0
         self._frames_in_window = 0
         # websockets answers pings and collects fragments as it parses them: they are counted there.
@@ -77,6 +85,39 @@ class Connection(ServerConnection):
         self._door.leave(self)
         self._places.leave(self)
         super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Take what has come; after the end drop it, and too much of it closes the socket."""
+        if not self._ended:
+            super().data_received(data)
+            return
+        self._dropped += len(data)
+        if self._dropped > _MOST_DROPPED:
+            self.transport.abort()
+
+    def send_data(self) -> None:
+        """Send what is to be sent; after the last word the connection ends."""
+        super().send_data()
+        if self.protocol.eof_sent and not self._ended:
+            self._ended = True
+            self._end()
+
+    def _end(self) -> None:
+        """Close the socket: at once where the other side has said its last word too, else in a moment."""
+        answering = self.protocol.state is State.CONNECTING
+        if (answering or self.protocol.close_rcvd is not None) and _unread(self.transport) == 0:
+            self.transport.close()
+            if answering:  # websockets bounds how long an answer may take to be sent
+                return
+        # A socket that is closed with something unread resets the connection: the other side might not learn
+        # why it has ended.
+        self.loop.call_later(_LAST_WORD_S, self.transport.abort)
+
+    async def close(self, code: int = CloseCode.NORMAL_CLOSURE, reason: str = "") -> None:
+        """Close the connection with a word; what the other side says to that is not waited for."""
+        with contextlib.suppress(ConnectionClosed):
+            async with self.send_context():
+                self.protocol.fail(code, reason)
 
     @property
     def asked(self) -> bool:
@@ -120,8 +161,8 @@ class Connection(ServerConnection):
             try:
                 accepted = self.gate.judge(frame)
             except BadFrame as error:
-                # Once what had already arrived is read, recv() reports the closed connection; viser handles
-                # that quietly.
+                # Once what had already been taken is read, recv() reports the closed connection; viser
+                # handles that quietly.
                 self._dismissed = True
                 await self.close(CloseCode.POLICY_VIOLATION, str(error)[:100])
                 continue
@@ -139,7 +180,6 @@ class Connection(ServerConnection):
         limits = self._limits
         if self._counted > limits.frames_at_once or self._fragments > limits.fragments:
             self._dismissed = True
-            self.loop.call_later(_ABORT_S, self.transport.abort)  # it may go on sending, and read nothing
             raise ProtocolError("too many frames")
         self._take_frame(frame)
 

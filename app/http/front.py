@@ -82,8 +82,7 @@ class Front:
             pass
         finally:
             self._door.leave(guest)
-            with contextlib.suppress(OSError):
-                writer.close()
+            await _close(writer, self._limits.request_s)
 
     async def _pass_on(
         self, head: bytes, guest: _Guest, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
@@ -97,9 +96,11 @@ class Front:
             return
         self._door.leave(guest)  # from here on the worker counts it
         inner_writer.write(_with_address(head, guest.address))
+        # A worker drops a page that answers no ping for twice this time; one that reads nothing is the same.
+        stalled_s = 2.0 * self._limits.ping_s
         ways = [
-            asyncio.create_task(_copy(reader, inner_writer)),
-            asyncio.create_task(_copy(inner_reader, writer)),
+            asyncio.create_task(_copy(reader, inner_writer, stalled_s)),
+            asyncio.create_task(_copy(inner_reader, writer, stalled_s)),
         ]
         try:
             await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
@@ -111,11 +112,23 @@ class Front:
             inner_writer.close()
 
 
-async def _copy(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def _copy(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, stalled_s: float) -> None:
+    """Pass bytes on until they end, or until none has been taken for so long."""
     with contextlib.suppress(OSError):
         while piece := await reader.read(_PIECE):
             writer.write(piece)
-            await writer.drain()
+            async with asyncio.timeout(stalled_s):
+                await writer.drain()
+
+
+async def _close(writer: asyncio.StreamWriter, within_s: float) -> None:
+    """Close a connection: nothing more is read, and what has still to be sent may take so long."""
+    writer.close()
+    try:
+        async with asyncio.timeout(within_s):
+            await writer.wait_closed()
+    except OSError:
+        writer.transport.abort()
 
 
 def _with_address(head: bytes, address: str) -> bytes:

@@ -1,6 +1,7 @@
 """The table of docs/serving.md, written from what the tests and the soak have recorded: ``make serving``.
 
     python -m tools.serving.table            # run the tests that rows.toml names, and write the table
+    python -m tools.serving.table --new      # run only the tests of which the record has nothing
     python -m tools.serving.table --table    # write the table anew from the record
 
 A test records a figure by pytest's ``record_property``; it comes here in the JUnit report. ``make soak``
@@ -137,14 +138,19 @@ def main() -> int:
     """Measure, keep the record, write the table; 1 when a row is not met."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--table", action="store_true", help="from the record, without measuring")
+    parser.add_argument("--new", action="store_true", help="run only tests that the record does not have")
     parser.add_argument("--soak", type=Path, default=SOAK, help="what make soak has left, if it is there")
     arguments = parser.parse_args()
     rows, record = entries(), json.loads(RECORD.read_text("utf-8"))
     if arguments.soak.exists():
         record["soak"] = json.loads(arguments.soak.read_text("utf-8"))
-    if not arguments.table:
+    named = [row.test for row in rows if row.test]
+    if arguments.new:
+        known = {test: found for test, found in record["tests"].items() if test in named}
+        record["tests"] = known | measure([test for test in named if test not in known])
+    elif not arguments.table:
         record["circumstances"] = machine()
-        record["tests"] = measure([row.test for row in rows if row.test])
+        record["tests"] = measure(named)
     RECORD.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n", "utf-8")
     written = table(rows, record)
     PAGE.write_text(with_table(PAGE.read_text("utf-8"), written), "utf-8")
