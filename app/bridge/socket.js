@@ -1,12 +1,15 @@
 // The way between page and server. viser's page sends at most one value in 30 ms, whichever control it comes from,
 // and drops what comes between: of two controls changed at once one is lost. Here each control keeps its newest value
 // until it is sent, and nothing is dropped. viser's websocket lives in a worker, which takes what it is to send as
-// messages; the worker is found when viser makes it. Leans on viser's page, as pinned: app/bridge/program.py puts
-// `schuler.send` into it, and tests/attack/test_viser_insides.py looks for the messages to and from the worker.
+// messages; the worker is found when viser makes it, and told to connect to the server that the page came from. Leans
+// on viser's page, as pinned: app/bridge/program.py puts `schuler.send` into it, and tests/attack/test_viser_insides.py
+// looks for the messages to and from the worker.
 (() => {
   const PERIOD_MS = 30;
   const TYPING_MS = 400; // so long a number that is being typed waits for its next letter: "540" may become "540 min"
   const Plain = window.Worker;
+  // viser takes the whole address of the page but for its query: what follows a # would be no address of a websocket.
+  const ADDRESS = `${location.origin.replace("http", "ws")}${location.pathname.replace(/\/$/, "")}`;
   const waiting = new Map(); // by control; the newest is last
   const held = new Map(); // what is being typed, by control: {message, timer}
   let socket = null;
@@ -26,6 +29,7 @@
     postMessage(data, ...rest) {
       if (data?.type === "set_server") {
         socket = this;
+        data = { ...data, server: ADDRESS };
         window.dispatchEvent(new Event("connecting"));
       }
       super.postMessage(data, ...rest);

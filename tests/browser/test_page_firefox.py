@@ -20,7 +20,21 @@ SETTINGS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.skipif(FIREFOX is None, reason="needs Firefox (apt-get install firefox-esr)")
+needs_firefox = pytest.mark.skipif(FIREFOX is None, reason="needs Firefox (apt-get install firefox-esr)")
+
+
+@needs_firefox
+def test_a_page_connects_whatever_follows_the_hash_of_its_address(
+    dashboard: tuple[DashboardServer, Dashboard], tmp_path: Path
+) -> None:
+    with Firefox(tmp_path, 1366, 768) as firefox:
+        firefox.open(f"{dashboard[0].url}#anything")
+        firefox.wait_for("location.pathname.includes('/s/') && location.hash === '#anything'")
+        firefox.wait_for("Number(document.querySelector('#sb-run')?.dataset.run ?? 0)")
+        assert firefox.faults == []
+
+
+@needs_firefox
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.nightly if own else ()) for name, own in SETTINGS.items()]
 )

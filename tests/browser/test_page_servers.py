@@ -95,6 +95,30 @@ def test_page_works_under_its_session_path_with_the_policy_on(another: Another) 
         bench.faults.clear()
 
 
+FRAGMENTS = ("#", "#anything", "#a?b=c", "?fixedDpr=0.25#", "?fixedDpr=0.25#x/y")
+"""Ends of an address that say nothing to a server: bookmarks, links and other programs add them."""
+
+
+def test_a_page_connects_whatever_follows_the_hash_of_its_address(another: Another) -> None:
+    visits: list[str] = []
+    bench = another(900, 600)
+    with served(
+        on_connect=lambda client, session: visits.append(session), on_disconnect=lambda *_: None
+    ) as server:
+        bench.page.goto(f"{server.url}?fixedDpr=0.25")
+        address, session = bench.page.url.partition("?")[0], bench.page.url.split("/s/")[1].split("/")[0]
+        eventually(lambda: len(visits) == 1)
+        for count, fragment in enumerate(FRAGMENTS, 2):
+            bench.page.goto("about:blank")
+            bench.page.goto(f"{address}{fragment}")
+            eventually(lambda count=count: len(visits) == count, 20.0)
+        # one that is put there while the page is open, before the server is started again
+        bench.page.evaluate("location.hash = 'later'")
+        bench.page.reload()
+        eventually(lambda: len(visits) == len(FRAGMENTS) + 2, 20.0)
+        assert set(visits) == {session} and bench.faults == []
+
+
 # ------------------------------------------------------------ places
 
 
