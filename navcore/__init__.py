@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from navcore.design.budget import Budget, budget
     from navcore.design.designs import Designs, designs
     from navcore.design.pareto import Pareto, pareto
-    from navcore.design.tune import Tuned, tune
+    from navcore.design.tune import tune
+    from navcore.design.tuned import Tuned
     from navcore.engine.measures import metrics
     from navcore.engine.run import MethodRun, Run
     from navcore.engine.simulation import simulate
@@ -71,11 +72,10 @@ __all__ = [
 _HOME = {
     "Budget": "design.budget",
     "Pareto": "design.pareto",
-    "Tuned": "design.tune",
+    "Tuned": "design.tuned",
     "Designs": "design.designs",
     "designs": "design.designs",
     "pareto": "design.pareto",
-    "tune": "design.tune",
     "Fault": "foundation.errors",
     "InputError": "foundation.errors",
     "MethodRun": "engine.run",

@@ -22,7 +22,6 @@ from schuler_bench.cli.run import RunCommand
 from schuler_bench.cli.serve import ServeCommand
 from schuler_bench.cli.study import StudyCommand
 from schuler_bench.cli.terminal import emit, lost
-from schuler_bench.cli.tune import TuneCommand
 
 if TYPE_CHECKING:
     from tyro._arguments import ArgumentDefinition
@@ -35,8 +34,7 @@ _COMMANDS = {
     "network": NetworkCommand,
     "presets": PresetsCommand,
     "check": CheckCommand,
-    "budget": command_of(QUESTIONS["budget"]),
-    "tune": TuneCommand,
+    **{id: command_of(question) for id, question in QUESTIONS.items()},
     "pareto": ParetoCommand,
     "adapt": AdaptCommand,
     "design": DesignCommand,

@@ -7,9 +7,8 @@ from navcore.foundation.answers import Answer
 from navcore.foundation.errors import InputError
 from navcore.questions.base import Cancelled, Progress, Question
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.load import heavy_load
+from schuler_bench.jobs.load import heavy_load, spare_load
 from schuler_bench.jobs.refusals import refusals
-from schuler_bench.jobs.scheduler import Load
 from schuler_bench.jobs.search import Search
 
 
@@ -24,10 +23,8 @@ class Asker(Search[Any, Any]):
         Whose answers these are.
     name : str
         Of the visitor, for the turns.
-    load : callable
-        What the scheduler needs to know, from the scenario that a question is of.
-    still_s : float
-        As of `Search`.
+    still_s : float, optional
+        As of `Search`; by default that of the question.
 
     Attributes
     ----------
@@ -41,8 +38,7 @@ class Asker(Search[Any, Any]):
         question: type[Question],
         name: str = "asker",
         *,
-        load: Callable[[Scenario], Load] = heavy_load,
-        still_s: float = 0.0,
+        still_s: float | None = None,
     ) -> None:
         super().__init__(
             tell,
@@ -50,8 +46,8 @@ class Asker(Search[Any, Any]):
             lambda found: question.keeps or found.complete,
             stopped=question.stopped,
             name=name,
-            load=lambda asked: load(asked.load),
-            still_s=still_s,
+            load=lambda asked: (spare_load if question.spare else heavy_load)(asked.load),
+            still_s=question.still_s if still_s is None else still_s,
             keeps=question.keeps,
         )
         self.question = question

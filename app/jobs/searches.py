@@ -7,7 +7,7 @@ from collections.abc import Callable
 from navcore.engine.run import Run
 from navcore.questions import QUESTIONS
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.jobs.designer import Designer, Fronts, Limits, Profiles, Tuner
+from schuler_bench.jobs.designer import Fronts, Limits, Tuner
 from schuler_bench.jobs.judge import Judge
 from schuler_bench.jobs.studier import Studier
 from schuler_bench.jobs.sweeper import Sweeper
@@ -32,10 +32,6 @@ class Searches:
         Sun's double loop.
     asking : dict of Asker
         By the name of the question that it asks.
-    designer : Designer
-        Best setting of a method.
-    profiles : Profiles
-        Objective over each parameter of a method.
     fronts : Fronts
         Pareto fronts of all networks.
     limits : Limits
@@ -54,8 +50,6 @@ class Searches:
         self.explainer = Explainer(self._tell, name)
         self.tuner = Tuner(self._tell, name)
         self.asking = {id: Asker(self._tell, question, name) for id, question in QUESTIONS.items()}
-        self.designer = Designer(self._tell, name)
-        self.profiles = Profiles(self._tell, name)
         self.fronts = Fronts(self._tell, name)
         self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
@@ -65,8 +59,6 @@ class Searches:
             self.explainer,
             self.tuner,
             *self.asking.values(),
-            self.designer,
-            self.profiles,
             self.fronts,
             self.limits,
             self.judge,

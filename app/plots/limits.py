@@ -1,6 +1,5 @@
 """Limits in words, as the page writes them: label, sign, value and unit."""
 
-from navcore.design.measures import read_requirement
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
 from schuler_bench.plots.units import number
@@ -29,18 +28,6 @@ def short_label(key: str) -> str:
     if row.statistic == "max_abs":
         return Text("largest {what}", what=what)
     return Text("{what} at the end", what=what) if row.statistic == "final" else Text("{what} RMS", what=what)
-
-
-def requirement_words(text: str) -> str:
-    """Limit of a search as the tab Requirements has it.
-
-    Examples
-    --------
-    >>> requirement_words("settling_s<=3600")
-    'settling ≤ 60 min'
-    """
-    requirement = read_requirement(text)
-    return limit_words(requirement.name, requirement.limit)
 
 
 def limit_words(key: str, limit: float, label: str = "") -> str:

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from navcore.design.measures import Objective, Requirement, read_requirement
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.scenario.model import Scenario
-from navcore.scenario.requirement import OF_THE_SETTING
+from navcore.quantities import searched
+from navcore.scenario.requirement import Requirement as Limit
 
 DEFAULT_LIMITS = {
     "settling_s<=4h": ("settling_s", "damping_ratio"),
@@ -18,11 +18,23 @@ An initial tilt is gone after three Schuler periods, and no mode grows by e with
 """
 
 
-def own_limits(scenario: Scenario, given: Sequence[Requirement]) -> list[Requirement]:
-    """Limits of the scenario on settling and growth that are not given anew."""
-    known = {*OF_THE_SETTING} - {one.name for one in given}
-    own = [one for one in scenario.requirement if one.quantity in known]
-    return [read_requirement(f"{one.quantity}{one.sense}{one.limit_si!r}") for one in own]
+def own_limits(requirements: Sequence[Limit], given: Sequence[Requirement]) -> list[Requirement]:
+    """Limits of a scenario that a search can keep and that are not given anew.
+
+    A limit of one run is kept as that of the ensemble of runs, where there is one.
+    """
+    again = {one.name for one in given}
+    rows = ((searched(one.quantity), one) for one in requirements)
+    return [
+        Requirement.of(row.key, one.sense, one.limit_si)
+        for row, one in rows
+        if row is not None and row.key not in again
+    ]
+
+
+def left_to_runs(requirements: Sequence[Limit]) -> tuple[str, ...]:
+    """Quantities that the scenario limits and no search can measure: runs alone judge them."""
+    return tuple(one.quantity for one in requirements if searched(one.quantity) is None)
 
 
 def require_consistent(limits: Sequence[Requirement]) -> None:

@@ -212,7 +212,7 @@ class Requirement:
     Attributes
     ----------
     text : str
-        As given.
+        As given: a `Text` that keeps the measure and the limit, ``limited`` and ``si``, for whoever words it.
     name, sense : str
         Measure, and "<=" or ">=".
     limit : float
@@ -223,6 +223,11 @@ class Requirement:
     name: str
     sense: str
     limit: float
+
+    @classmethod
+    def of(cls, name: str, sense: str, limit: float) -> "Requirement":
+        """Make a limit of its parts; its text is as `read_requirement` reads it."""
+        return cls(Text("{limited}{sense}{si!r}", limited=name, sense=sense, si=limit), name, sense, limit)
 
     def excess(self, setting: Setting) -> float:
         """By how much it is missed, relative to the limit; 0 when it is met."""
@@ -324,4 +329,5 @@ def read_requirement(text: str) -> Requirement:
     except NotANumber as error:
         allowed = Text("the limit {error}", error=str(error))
         raise InputError(Fault("", "--require", text, allowed)) from None
-    return Requirement(text.strip(), match["name"], match["sense"], limit)
+    given = Text("{text}", text=text.strip(), limited=match["name"], si=limit)
+    return Requirement(given, match["name"], match["sense"], limit)

@@ -1,12 +1,14 @@
 """An objective over each parameter of a network, the others as they are: what a search has before it."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from navcore.design.measures import TUNING_INTERVALS, Setting, measure, over_run
+from navcore.design.measures import TUNING_INTERVALS, Setting, in_display_unit, measure, over_run
 from navcore.design.ship import Ship
 from navcore.design.vary import Varied, changed, present, read_varied
+from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.errors import InputError
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -39,6 +41,53 @@ class Profile:
     now: tuple[float, float] | None
 
 
+@dataclass(frozen=True)
+class Profiles(Answer):
+    """An objective over each of some parameters.
+
+    Attributes
+    ----------
+    of : str
+        The objective.
+    curves : tuple of Profile
+        One a parameter.
+    stopped : bool
+        It was cancelled: the parameters that were done.
+    """
+
+    of: str
+    curves: tuple[Profile, ...]
+    stopped: bool = False
+
+    def document(self) -> dict[str, Any]:
+        """Return a document that JSON can hold."""
+        return {
+            "objective": self.of,
+            "curves": [
+                {
+                    "field": one.field,
+                    "values": list(one.values),
+                    "objective": [_finite(value) for value in one.found],
+                    "now": one.now and {"value": one.now[0], "objective": _finite(one.now[1])},
+                }
+                for one in self.curves
+            ],
+            "stopped": self.stopped,
+        }
+
+    def rows(self) -> Iterator[Table]:
+        """Give a table for each parameter."""
+        for one in self.curves:
+            unit = in_display_unit(self.of, None)[1]
+            found = [in_display_unit(self.of, value)[0] for value in one.found]
+            rows = tuple((number(value), each) for value, each in zip(one.values, found, strict=True))
+            yield Table((Column(one.field), Column(self.of, unit)), rows)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
 def profiles(
     scenario: Scenario,
     objective: str,
@@ -48,7 +97,7 @@ def profiles(
     whole: bool = False,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
-) -> tuple[Profile, ...]:
+) -> Profiles:
     """Measure an objective at places over the range of each parameter.
 
     Parameters
@@ -91,4 +140,4 @@ def profiles(
         lines.append(Profile(one.field, one.log, values, tuple(at(one, each) for each in values), now))
         if progress is not None:
             progress(len(lines) / len(varied))
-    return tuple(lines)
+    return Profiles(objective, tuple(lines), len(lines) < len(varied))

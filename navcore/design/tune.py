@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
-from navcore.design.confirm import Confirmed, confirmed
+from navcore.design.confirm import confirmed
 from navcore.design.default_limits import limits_by_default, own_limits, require_consistent, without_defaults
 from navcore.design.limits_cost import flat_ranges, nothing_meets, without_limits
 from navcore.design.measures import (
@@ -33,99 +32,27 @@ from navcore.design.search import (
     no_method,
 )
 from navcore.design.stated import assumed_zero
+from navcore.design.tuned import Tuned
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError, StoppedError, UnstableError
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
-from navcore.quantities import QUANTITIES, Judged
+from navcore.quantities import QUANTITIES
 from navcore.scenario.model import Scenario
 
 _GAIN = 1e-4
 """Relative gain without a requirement from which it counts as holding the optimum back."""
 
 
-@dataclass(frozen=True)
-class Tuned:
-    """Result of a search.
-
-    Attributes
-    ----------
-    best : dict of float
-        Value of each varied field.
-    objective : float
-        At the best setting, SI (of a sum: relative).
-    before : float or None
-        At the present setting; None where that makes no method or has no finite value.
-    floor : float or None
-        Least that any damping can reach; None where the objective has none.
-    at_end_of_range : tuple of str
-        Fields that stand at an end of their range: the true optimum may lie outside.
-    active : tuple of str
-        Requirements that hold the optimum back.
-    cost : dict of float
-        Objective without each active requirement.
-    flat : dict of (float, float)
-        Range of each field, the others held, within which the objective is at most 5 % above the best.
-    stopped : bool
-        The search was cancelled: the best so far.
-    warnings : tuple of str
-        What the objective does not see of the best setting: a mode of the whole system that grows, a
-        recording that counts as free of error.
-    judged : {"steady", "ensemble"}
-        What root mean squares are of.
-    default_limits : tuple of str
-        Limits that were kept because none of their quantity was given.
-    assumed_zero : tuple of str
-        Standard deviations of constants that the scenario states in no way, so that 0 is assumed.
-    confirmed : Confirmed or None
-        Both settings in runs; None where that was not asked for.
-    scenario : Scenario
-        With the best setting in place.
-    """
-
-    best: dict[str, float]
-    objective: float
-    before: float | None
-    floor: float | None
-    at_end_of_range: tuple[str, ...]
-    active: tuple[str, ...]
-    cost: dict[str, float]
-    flat: dict[str, tuple[float, float]]
-    stopped: bool
-    warnings: tuple[str, ...]
-    judged: Judged
-    default_limits: tuple[str, ...]
-    scenario: Scenario = field(repr=False)
-    assumed_zero: tuple[str, ...] = ()
-    confirmed: Confirmed | None = None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the document of interface.md."""
-        return {
-            "best": self.best,
-            "objective": self.objective,
-            "before": self.before,
-            "floor": self.floor,
-            "at_end_of_range": list(self.at_end_of_range),
-            "active": list(self.active),
-            "cost": self.cost,
-            "flat": {name: list(ends) for name, ends in self.flat.items()},
-            "stopped": self.stopped,
-            "default_limits": list(self.default_limits),
-            "assumed_zero": list(self.assumed_zero),
-            "warnings": list(self.warnings),
-            **({} if self.confirmed is None else {"confirmed": self.confirmed.as_dict()}),
-        }
-
-
 def tune(
     scenario: Scenario,
     objective: str,
     vary: Sequence[str],
-    require: Sequence[str] = (),
+    require: Sequence[str | Requirement] = (),
     *,
     along: bool = False,
+    whole: bool = False,
     worst_of: Sequence[Scenario] = (),
     default_limits: bool = True,
     confirm: bool = False,
@@ -144,10 +71,13 @@ def tune(
     vary : sequence of str
         Fields, ``method.1.network.sigma`` or with a range ``method.1.network.sigma=1e-4:0.1``.
     require : sequence of str
-        Limits, ``settling_s<=3600``. The scenario's own limits on settling and growth count too.
+        Limits, ``settling_s<=3600``. The scenario's own limits count too, where none is given of their
+        quantity: those of one run as limits of what the objective is judged of.
     along : bool
         Root mean squares over the scenario's run; else in the steady state at rest. Heading and position,
         and a method whose policy re-tunes its network, have no steady state and are always over the run.
+    whole : bool
+        Fields without a range are searched in all that they allow, not only what their sliders reach.
     worst_of : sequence of Scenario
         Further scenarios in whose same method the parameters are put too: the worst of all counts.
     default_limits : bool
@@ -172,10 +102,11 @@ def tune(
     >>> from navcore import load, tune
     >>> found = tune(load("sikuliaq-like"), "tilt_rms", ["method.1.network.xi=0.1:5"]) # doctest: +SKIP
     """
-    wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
-    limits += own_limits(scenario, limits)
+    wanted = read_objective(objective)
+    limits = [read_requirement(one) if isinstance(one, str) else one for one in require]
+    limits += own_limits(scenario.requirement, limits)
     require_consistent(limits)
-    varied = read_varied(scenario, vary)
+    varied = read_varied(scenario, vary, whole)
     index = varied[0].method
     along = along or over_run((*wanted.names, *(one.name for one in limits)))
     along = along or scenario.method[index].policy.tunes
@@ -249,7 +180,8 @@ def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:
         raise InputError(list(nothing_meets(search, ALONG if along else EXPLAIN, start)))
     found = _result(search, best[1], before, effort, stopped)
     kept = tuple(one.text for one in defaults)
-    return replace(found, default_limits=kept, warnings=(*left, *found.warnings))
+    every = (*limits, *defaults)
+    return replace(found, default_limits=kept, limits=every, warnings=(*left, *found.warnings))
 
 
 def _confirmed(
@@ -363,6 +295,7 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         default_limits=(),
         scenario=scenario.model_copy(update={"method": methods}),
         assumed_zero=assumed_zero(scenario, not search.ships[0].along_run),
+        of=search.objective.text,
     )
 
 

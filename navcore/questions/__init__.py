@@ -11,5 +11,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     Question,
     "id",
     "navcore.questions.budget:BudgetQuestion",
+    "navcore.questions.tune:TuneQuestion",
+    "navcore.questions.profile:ProfileQuestion",
 )
 """Questions by name, in the order in which the command and the page offer them."""

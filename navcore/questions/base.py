@@ -137,6 +137,10 @@ class Question(Parameters):
         What ``--out`` is ("file", "folder" or ""), and what is written there.
     keeps : bool
         What a stopped question has found so far is an answer.
+    spare : bool
+        Nobody waits for it: it is answered only beside everything else, never on a cluster.
+    still_s : float
+        Where it follows the page: time for which nothing newer must have been asked before it is begun.
     stopped : str
         What is said where it was stopped and nothing was found.
     scenario : Scenario
@@ -152,6 +156,8 @@ class Question(Parameters):
     writes: ClassVar[Writes] = ""
     written: ClassVar[str] = ""
     keeps: ClassVar[bool] = True
+    spare: ClassVar[bool] = False
+    still_s: ClassVar[float] = 0.0
     stopped: ClassVar[str] = Text("Stopped: nothing was found.")
     scenario: Asked = option(..., metavar="SCENARIO", help=Text("Name of a preset, or a TOML file."))
 

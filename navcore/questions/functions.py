@@ -1,6 +1,7 @@
 """Functions of `navcore` that ask a question: their signatures and docstrings are made from its fields."""
 
 import inspect
+import textwrap
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +11,7 @@ from navcore.questions import QUESTIONS
 from navcore.questions.base import Option, Question
 
 _TYPES = {"flag": "bool", "whole": "int", "number": "float", "text": "str"}
+_IN = "    "
 _WAITED = ("progress", "cancelled")
 _REST = """progress : callable, optional
     Told the fraction done, 0..1.
@@ -97,7 +99,8 @@ def _parameter(question: type[Question], one: Option) -> str:
     allowed = allowed_range(question.model_fields[one.name])
     bounds = f" It {allowed}." if allowed else ""
     given = "" if one.default in (..., None, ()) else f" Default {one.default!r}."
-    return f"{one.name} : {kind}{default}\n    {one.help}{bounds}{given}"
+    about = textwrap.fill(f"{one.help}{bounds}{given}", 100, initial_indent=_IN, subsequent_indent=_IN)
+    return f"{one.name} : {kind}{default}\n{about}"
 
 
 FUNCTIONS = {name_of(question): function_of(question) for question in QUESTIONS.values()}

@@ -179,10 +179,15 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
 
 
 def set_field(data: Any, key: str, value: Any) -> str:
-    """Set one field of a scenario mapping by its dotted key; return what is wrong with it, or nothing."""
+    """Set one field of a scenario mapping by its dotted key; return what is wrong with it, or nothing.
+
+    ``requirement.0.quantity`` makes the list, or its next block, where it is not there; not so a method.
+    """
     path = key.split(".")
     for depth, part in enumerate(path[:-1]):
         if isinstance(data, list):
+            if part == str(len(data)) and path[0] != "method" and all(isinstance(one, dict) for one in data):
+                data.append({})
             if not part.isdigit() or int(part) >= len(data):
                 return Text('"{part}" must be a number from 0 to {data}', part=part, data=len(data) - 1)
             data = data[int(part)]
@@ -191,7 +196,8 @@ def set_field(data: Any, key: str, value: Any) -> str:
                 data[part] = [{}]
             if part in _NAMED and isinstance(data.get(part), str):
                 data[part] = {_NAMED[part]: data[part]}
-            data = data.setdefault(part, {})
+            of_blocks = path[depth + 1].isdigit() and depth + 2 < len(path)
+            data = data.setdefault(part, [] if of_blocks else {})
         else:
             return Text('"{path}" is a single value, not a block', path=".".join(path[:depth]))
     last = path[-1]

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 
-from navcore.design.measures import TUNING_INTERVALS, Setting, read_objective
+from navcore.design.measures import TUNING_INTERVALS, Requirement, Setting, read_objective
 from navcore.design.ship import Ship
-from navcore.design.tune import Tuned, tune
+from navcore.design.tune import tune
+from navcore.design.tuned import Tuned, in_unit
 from navcore.design.vary import read_varied
+from navcore.foundation.answers import Column, Table
 from navcore.foundation.errors import InputError
 from navcore.foundation.progress import part_of
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from navcore.study.model import Study
 from navcore.study.robust import points_of
@@ -49,10 +52,21 @@ class TunedOver(Tuned):
     here: float = math.nan
     best_here: float = math.nan
 
-    def as_dict(self) -> dict[str, Any]:
+    def _about(self) -> Iterator[Table | str]:
+        where = ", ".join(f"{name} = {value}" for name, value in self.where.items())
+        yield Table(
+            (Column(Text("over {points} points", points=self.points)), Column(), Column(), Column()),
+            (
+                (Text("  worst"), *in_unit(self.of, self.worst), where or Text("the scenario itself")),
+                (Text("  in the scenario itself"), *in_unit(self.of, self.here), ""),
+                (Text("  best there"), *in_unit(self.of, self.best_here), ""),
+            ),
+        )
+
+    def document(self) -> dict[str, Any]:
         """Return the document of interface.md."""
         own = {"points": self.points, "worst": {"factors": self.where, "objective": self.worst}}
-        return {**super().as_dict(), "over": {**own, "here": self.here, "best_here": self.best_here}}
+        return {**super().document(), "over": {**own, "here": self.here, "best_here": self.best_here}}
 
 
 def tune_over(
@@ -60,9 +74,10 @@ def tune_over(
     study: Study,
     objective: str,
     vary: Sequence[str],
-    require: Sequence[str] = (),
+    require: Sequence[str | Requirement] = (),
     *,
     along: bool = False,
+    whole: bool = False,
     default_limits: bool = True,
     confirm: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -79,7 +94,7 @@ def tune_over(
         With the method; it counts as a point.
     study : Study
         Its factors and sample say what may differ; its own scenario, seeds and outputs do not count.
-    objective, vary, require, along, default_limits, progress, cancelled
+    objective, vary, require, along, whole, default_limits, progress, cancelled
         As of `navcore.design.tune.tune`.
     confirm : bool
         Run the present setting and the proposal on 32 seeds of the hardest point.
@@ -92,8 +107,8 @@ def tune_over(
         The level loop of every setting is unstable, or the proposal diverges in a run.
     """
     plan, places, points = points_of(scenario, study)
-    wanted, index = read_objective(objective), read_varied(scenario, vary)[0].method
-    given = {"along": along, "default_limits": default_limits, "cancelled": cancelled}
+    wanted, index = read_objective(objective), read_varied(scenario, vary, whole)[0].method
+    given = {"along": along, "whole": whole, "default_limits": default_limits, "cancelled": cancelled}
     units: dict[str, float] = {}
 
     def at(point: Scenario, setting: Scenario, over_the_run: bool) -> Setting:

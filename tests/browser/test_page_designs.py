@@ -126,7 +126,7 @@ def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -
 
 @pytest.mark.slow
 def test_a_setting_is_tuned_over_the_points_of_the_tab_study(short: Bench) -> None:
-    session, designer = short.session, short.session.searches.designer
+    session, designer = short.session, short.session.searches.asking["tune"]
     before = session.scenario
     short.tab("Tune")
     short.choose(OVER, PLACES["study"])

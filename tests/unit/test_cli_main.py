@@ -14,6 +14,7 @@ from navcore.scenario.file import presets
 from navcore.scenario.schema_file import schema_text
 from navcore.study.file import studies
 from schuler_bench.cli import main
+from schuler_bench.cli.parse import _COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -27,7 +28,7 @@ def run(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "{serve, run, network, presets, check, budget, tune, pareto, adapt, design, study, bench}"),
+        ([], f"{{{', '.join(_COMMANDS)}}}"),
         (["simulate"], "bench}, not 'simulate'"),
         (["run"], "run needs SCENARIO"),
         (["run", "zha-fast", "--fromat", "csv"], "run does not know --fromat; perhaps --format"),

@@ -15,11 +15,11 @@ from navcore.design.vary import read_varied
 from navcore.engine.ensemble import drawn
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import UnstableError
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.file import load, to_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from schuler_bench.cli import main
-from schuler_bench.jobs.designer import TuningTask
 from schuler_bench.views.tune.proposal import doubts
 
 SHIP: dict[str, Any] = {
@@ -126,7 +126,7 @@ def test_a_proposal_that_is_worse_on_a_recorded_track_is_marked() -> None:
         low = result.changes["velocity_rms"].low
         assert low is not None and low > 0.0
     assert found.warnings[0] == "velocity_rms is larger after it, over 32 seeds of the run"
-    asked = TuningTask(recorded, "velocity_rms", tuple(vary), ())
+    asked = TuneQuestion(scenario=recorded, objective="velocity_rms", vary=tuple(vary))
     assert doubts(asked, found) == [
         "ensemble velocity RMS per axis is larger after it, over 32 seeds of the run"
     ]

@@ -20,7 +20,7 @@ FIELDS = tunable_fields(SCENARIO, 2)
 
 def test_an_objective_over_one_parameter_is_that_of_the_settings() -> None:
     told: list[float] = []
-    found = profiles(SCENARIO, "tilt_rms", FIELDS, progress=told.append)
+    found = profiles(SCENARIO, "tilt_rms", FIELDS, progress=told.append).curves
     assert [one.field for one in found] == list(FIELDS) and told == [0.5, 1.0]
     before = measured(SCENARIO, ("tilt_rms", "velocity_rms"), 2)[0]
     for one in found:
@@ -36,14 +36,14 @@ def test_an_objective_over_one_parameter_is_that_of_the_settings() -> None:
 
 
 def test_it_stops_and_refuses_a_field_that_does_not_vary() -> None:
-    assert profiles(SCENARIO, "tilt_rms", FIELDS, cancelled=lambda: True) == ()
+    assert profiles(SCENARIO, "tilt_rms", FIELDS, cancelled=lambda: True).curves == ()
     with pytest.raises(InputError, match="method.2.network.id"):
         profiles(SCENARIO, "tilt_rms", ["method.2.network.id"])
 
 
 def test_settings_that_are_refused_leave_a_gap() -> None:
     scenario = load("sikuliaq-like", ["method.1.network.id=unity2"])
-    found = profiles(scenario, "settling_s", tunable_fields(scenario, 1), whole=True)
+    found = profiles(scenario, "settling_s", tunable_fields(scenario, 1), whole=True).curves
     method = scenario.method[1]
     figure = profiles_figure(found, "settling_s", method, 1, 0.5)
     gaps = [math.isinf(value) for one in found for value in one.found]
@@ -54,7 +54,7 @@ def test_settings_that_are_refused_leave_a_gap() -> None:
 
 
 def test_the_picture_has_a_panel_a_parameter_with_one_axis_for_the_objective() -> None:
-    found = profiles(SCENARIO, "tilt_rms", FIELDS)
+    found = profiles(SCENARIO, "tilt_rms", FIELDS).curves
     figure = profiles_figure(found, "tilt_rms", SCENARIO.method[2], 2, 0.5)
     layout = figure["layout"]
     assert [layout[axis]["title"]["text"] for axis in ("xaxis", "xaxis2")] == [

@@ -9,13 +9,21 @@ import numpy as np
 import pytest
 
 from navcore.design.budget import budget
-from navcore.design.measures import Setting, Ship, read_objective, read_requirement
+from navcore.design.measures import (
+    TUNING_INTERVALS,
+    Setting,
+    Ship,
+    measure,
+    read_objective,
+    read_requirement,
+)
 from navcore.design.pareto import measured, pareto
 from navcore.design.tune import tune
 from navcore.design.vary import read_varied, tunable_fields
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.file import load, to_toml
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import Requirement
@@ -95,7 +103,7 @@ def test_a_24_h_mode_that_grows_is_told_with_the_proposal() -> None:
     found = tune(ship, "tilt_rms", vary)
     (told,) = found.warnings
     assert "the 24 h mode grows, e-folding time" in told
-    assert found.as_dict()["warnings"] == [told]
+    assert found.document()["warnings"] == [told]
     assert tune(ship, "tilt_rms", vary, ["earth_mode_growth_per_s<=0"]).warnings == ()
 
 
@@ -326,6 +334,35 @@ def test_ctrl_c_keeps_what_was_found_and_marks_it(
     document = json.loads(out)
     assert asked[0] < 0.9 and document["stopped"] is True and "stopped" in err
     assert document.get("best") or document.get("fronts") or document.get("methods")
+
+
+def test_a_limit_of_the_scenario_counts_for_command_function_and_page(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """`tune` kept limits on settling and growth alone; the page, all that a search can measure."""
+    fields = ["method.2.network.zeta", "method.2.network.eta"]
+    limit = ["requirement.0.quantity=velocity_rms_mps", "requirement.0.at_most=0.335"]
+    limited = load("sikuliaq-like", ["run.duration_h=4", *limit])
+    free = limited.model_copy(update={"requirement": ()})
+    without = tune(free, "tilt_rms", fields, along=True)
+    kept = TuneQuestion(
+        scenario=limited, objective="tilt_rms", vary=tuple(fields), along=True, confirm=False
+    ).answer()
+    assert without.active == () and kept.active == ("velocity_rms<=0.335",)
+    found = Setting(Ship(kept.scenario, True, TUNING_INTERVALS), kept.scenario.method[2])
+    assert measure(found, "velocity_rms") == pytest.approx(0.335, rel=0.01)
+    assert kept.objective > without.objective and kept.best["method.2.network.zeta"] < 1.1
+    options = [option for one in ("run.duration_h=4", *limit) for option in ("--set", one)]
+    vary = [option for field in fields for option in ("--vary", field)]
+    call = ["tune", "sikuliaq-like", *options, "--objective", "tilt_rms", *vary, "--along", "--no-confirm"]
+    assert main([*call, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["best"] == kept.best
+    # one that is given takes its place; one that no search can measure is named
+    again = tune(limited, "tilt_rms", fields, ["velocity_rms<=10"], along=True)
+    assert again.best == without.best
+    most = limited.requirement[0].model_copy(update={"quantity": "tilt_max_arcsec"})
+    lines = tune(free.model_copy(update={"requirement": (most,)}), "tilt_rms", fields).lines()
+    assert "judged by runs alone, not kept by the search: tilt_max_arcsec" in lines
 
 
 def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

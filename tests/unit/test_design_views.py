@@ -6,22 +6,21 @@ from dataclasses import replace
 import pytest
 
 from navcore.design.budget import budget
-from navcore.design.measures import read_requirement
+from navcore.design.default_limits import own_limits
 from navcore.design.tune import tune
 from navcore.design.vary import tunable_fields
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.questions.budget import BudgetQuestion
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.jobs.designer import Designer, TuningTask
 from schuler_bench.jobs.refusals import refusals
 from schuler_bench.plots.budgets import steady_budget
 from schuler_bench.views.design.figure import NOTHING, budget_figure, parts
 from schuler_bench.views.tune.proposal import proposal_html, sentences_about
-from schuler_bench.views.tune.setting import requirements_as_text
 from tests.limits import limits
 
 
@@ -106,7 +105,7 @@ def test_only_numbers_of_the_network_that_are_given_may_vary(ship, compass):
 
 def test_requirements_reach_the_search_in_si():
     asked = limits(settling_s=60.0, damping_ratio=0.4, log_tilt=3.0, position_rms_m=100.0)
-    found = {one.name: one.limit for one in map(read_requirement, requirements_as_text(asked))}
+    found = {one.name: one.limit for one in own_limits(asked, ())}
     assert found == {
         "settling_s": 3600.0,
         "damping_ratio": 0.4,
@@ -118,7 +117,7 @@ def test_requirements_reach_the_search_in_si():
 def test_a_proposal_names_field_value_floor_and_what_holds_it(compass):
     fields, limits = tunable_fields(compass, 0), ("settling_s<=600",)
     found = tune(compass, "tilt_rms", fields, limits)
-    task = TuningTask(compass, "tilt_rms", fields, limits)
+    task = TuneQuestion.ask({"scenario": compass, "objective": "tilt_rms", "vary": fields, "require": limits})
     told = " ".join(sentences_about(task, found))
     assert "times the floor" in told and "The requirement settling ≤ 10 min holds the optimum back" in told
     grows = "whole system at latitude 45 deg: the 24 h mode grows, e-folding time 3.1 days"
@@ -131,7 +130,7 @@ def test_a_refusal_speaks_the_language_of_the_page(compass):
     """It was "--require = 'settling_s<=60': nothing within these ranges meets ... settling_s comes to"."""
     with pytest.raises(InputError) as refused:
         tune(compass, "tilt_rms", ("method.0.network.xi",), ("settling_s<=60",))
-    (words,) = refusals(refused.value)
+    (words,) = refusals(refused.value, TuneQuestion)
     assert words.startswith("Limit settling ≤ 1 min: nothing within these ranges meets all requirements")
     assert "alone settling comes to" in words and " min; without it steady tilt RMS per axis comes" in words
     assert "--" not in words and "settling_s" not in words and "tilt_rms" not in words
@@ -139,10 +138,11 @@ def test_a_refusal_speaks_the_language_of_the_page(compass):
 
 def test_the_start_cards_network_keeps_its_damping():
     """*Tune a network*, *Tune*, *Accept* took zeta from 0.7 to 0.01 and settling from 195 to 5580 min."""
-    designer = Designer(lambda: None)
+    designer = Asker(lambda: None, TuneQuestion)
     scenario = load("liu-networks", ["run.duration_h=2.0"])
     try:
-        designer.begin(TuningTask(scenario, "tilt_rms", tunable_fields(scenario, 2), ()))
+        vary = tunable_fields(scenario, 2)
+        designer.begin(TuneQuestion(scenario=scenario, objective="tilt_rms", vary=vary))
         assert designer.wait_idle(360.0)
         found, task = designer.result, designer.asked
         assert found is not None and task is not None and found.confirmed is not None
@@ -159,9 +159,9 @@ def test_the_start_cards_network_keeps_its_damping():
 
 def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
     told: list[int] = []
-    designer, budgeter = Designer(lambda: told.append(1)), Asker(lambda: told.append(1), BudgetQuestion)
+    designer, budgeter = (Asker(lambda: told.append(1), kind) for kind in (TuneQuestion, BudgetQuestion))
     try:
-        task = TuningTask(compass, "tilt_rms", ("method.0.network.xi",), ())
+        task = TuneQuestion(scenario=compass, objective="tilt_rms", vary=("method.0.network.xi",))
         designer.begin(task)
         budgeter.begin(BudgetQuestion(scenario=compass))
         assert designer.wait_idle(60.0) and budgeter.wait_idle(60.0)

@@ -17,11 +17,12 @@ from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.questions.budget import BudgetQuestion
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs import helper
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.jobs.designer import Designer, Fronts, FrontsTask, TableTask, Tuner, TuningTask
+from schuler_bench.jobs.designer import Fronts, FrontsTask, TableTask, Tuner
 from schuler_bench.jobs.envelopes import Envelopes
 from schuler_bench.jobs.long_runs import run_for
 from schuler_bench.jobs.scheduler import Lane, Scheduler
@@ -167,8 +168,8 @@ def begun(name: str) -> Search[Any, Any]:
         search = Fronts(lambda: None)
         search.begin(FrontsTask(SCENARIO, 2, ("velocity_rms", "settling_s"), ("compass",)))
     elif name == "setting":
-        search = Designer(lambda: None)
-        search.begin(TuningTask(SCENARIO, "tilt_rms", ("method.2.network.zeta",), ()))
+        search = Asker(lambda: None, TuneQuestion)
+        search.begin(TuneQuestion(scenario=SCENARIO, objective="tilt_rms", vary=("method.2.network.zeta",)))
     elif name == "budget":
         search = Asker(lambda: None, BudgetQuestion)
         search.begin(BudgetQuestion(scenario=SCENARIO))

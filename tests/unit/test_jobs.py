@@ -9,17 +9,17 @@ import pytest
 
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.designer import (
-    Designer,
     Fronts,
     FrontsTask,
     Limits,
     LimitsTask,
     TableTask,
     Tuner,
-    TuningTask,
 )
 from schuler_bench.jobs.scheduler import Lane, Load
 from schuler_bench.jobs.searches import Searches
@@ -211,7 +211,11 @@ SHIP = Scenario.parse(
 @pytest.mark.parametrize(
     ("kind", "task", "found"),
     [
-        (Designer, TuningTask(SHIP, "tilt_rms", ("method.0.network.xi",), ()), lambda one: one.best),
+        (
+            lambda tell: Asker(tell, TuneQuestion),
+            TuneQuestion(scenario=SHIP, objective="tilt_rms", vary=("method.0.network.xi",)),
+            lambda one: one.best,
+        ),
         (Fronts, FrontsTask(SHIP, 0, ("tilt_rms", "velocity_rms")), lambda one: one.fronts["compass"]),
         (Limits, LimitsTask(SHIP), lambda one: one.methods),
     ],

@@ -10,12 +10,11 @@ from navcore.design.measures import TUNING_INTERVALS, Setting, measure
 from navcore.design.ship import Ship
 from navcore.design.tune import tune
 from navcore.foundation.errors import InputError
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.model import Scenario
 from navcore.study.model import Study
 from navcore.study.robust_tune import tune_over
 from schuler_bench.cli import main
-from schuler_bench.cli.design_text import tune_text
-from schuler_bench.jobs.designer import TuningTask
 from schuler_bench.views.tune.proposal import proposal_html
 
 VARY = ["method.0.network.sigma=1e-3:0.05"]
@@ -53,18 +52,22 @@ def test_the_setting_is_best_at_the_worst_point_and_dearer_in_the_scenario() -> 
     assert found.here == pytest.approx(here) and here > 1.2 * alone.objective
     # it is put into the scenario itself
     assert found.scenario.reference == ship().reference
-    document = found.as_dict()["over"]
+    document = found.document()["over"]
     assert document["worst"]["factors"] == found.where and document["points"] == 3
+
+
+def asked() -> TuneQuestion:
+    return TuneQuestion(scenario=ship(), objective="tilt_rms", vary=("method.0.network.sigma",), over=study())
 
 
 def test_page_and_terminal_say_what_it_costs() -> None:
     found = tune_over(ship(), study(), "tilt_rms", VARY)
-    lines = "\n".join(tune_text("tilt_rms", found))
+    lines = "\n".join(found.lines())
     assert "over 3 points" in lines and "reference.noise_mps = 0.5" in lines and "best there" in lines
-    html = proposal_html(TuningTask(ship(), "tilt_rms", ("method.0.network.sigma",), (), over=study()), found)
+    html = proposal_html(asked(), found)
     assert "Over 3 points of the study the objective is at most" in html
     assert "the setting that is best here has" in html
-    task = TuningTask(ship(), "tilt_rms", ("method.0.network.sigma",), (), over=study())
+    task = asked()
     assert "arcsec, with " in html
     at_home = proposal_html(task, replace(found, where={}))
     assert "arcsec, in this scenario itself; the runs are of" in at_home

@@ -217,3 +217,15 @@ def test_written_and_read_again_it_is_the_same(data):
     assert again.canonical() == scenario.canonical()
     assert scenario_hash(again) == scenario_hash(scenario)
     assert to_toml(again) == to_toml(scenario)
+
+
+def test_an_override_makes_a_list_of_blocks_and_its_next_one() -> None:
+    """`navcore.designs` names it in its example; a method is not made by a mistyped number."""
+    limits = ["requirement.0.quantity=velocity_rms_mps", "requirement.0.at_most=0.5"]
+    limits += ["requirement.1.quantity=settling_s", "requirement.1.at_most=60"]
+    asked = load("zha-fast", limits).requirement
+    assert [(one.quantity, one.limit) for one in asked] == [("velocity_rms_mps", 0.5), ("settling_s", 60.0)]
+    with pytest.raises(InputError, match='"2" must be a number from 0 to 0'):
+        load("zha-fast", [*limits[:2], "requirement.2.at_most=3"])
+    with pytest.raises(InputError, match='"3" must be a number from 0 to 2'):
+        load("zha-fast", ["method.3.damping=free"])

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from navcore.design.measures import Setting, measure, read_requirement
+from navcore.design.measures import Setting, measure
 from navcore.design.ship import Ship
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, Quantity, limit_unit
@@ -16,8 +16,8 @@ from schuler_bench.plots.units import number
 
 if TYPE_CHECKING:
     from navcore.design.confirm import Change
-    from navcore.design.tune import Tuned
-    from schuler_bench.jobs.designer import TuningTask
+    from navcore.design.tuned import Tuned
+    from navcore.questions.tune import TuneQuestion
 
 _OF_THE_LOOP = ("settling_s", "growth_per_s")
 _SMALLER, _LARGER, _ALIKE = (
@@ -27,7 +27,7 @@ _SMALLER, _LARGER, _ALIKE = (
 )
 
 
-def confirmation_html(task: TuningTask, tuned: Tuned) -> str:
+def confirmation_html(task: TuneQuestion, tuned: Tuned) -> str:
     """Table with a row a quantity: before, after, the paired difference, and the limit."""
     seeds = None if tuned.confirmed is None else tuned.confirmed.seeds
     title = (
@@ -40,7 +40,7 @@ def confirmation_html(task: TuningTask, tuned: Tuned) -> str:
     return table([head], [*_runs(task, tuned), *_loops(task, tuned)], "sb-confirmed")
 
 
-def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
+def _runs(task: TuneQuestion, tuned: Tuned) -> Iterator[str]:
     if tuned.confirmed is None:
         return
     limits = {one.quantity: one for one in task.scenario.requirement}
@@ -61,11 +61,9 @@ def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
         )
 
 
-def _loops(task: TuningTask, tuned: Tuned) -> Iterator[str]:
+def _loops(task: TuneQuestion, tuned: Tuned) -> Iterator[str]:
     """Settling and growth of both settings, beside their limits."""
-    ship, limits = Ship(task.scenario), {}
-    for text in (*task.require, *tuned.default_limits):
-        limits[read_requirement(text).name] = read_requirement(text)
+    ship, limits = Ship(task.scenario), {one.name: one for one in tuned.limits}
     settings = [Setting(ship, each.method[task.method]) for each in (task.scenario, tuned.scenario)]
     for key in dict.fromkeys((*_OF_THE_LOOP, *(name for name in limits if QUANTITIES[name].kind is None))):
         quantity, one = QUANTITIES[key], limits.get(key)

@@ -11,25 +11,24 @@ from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
 from schuler_bench.jobs.refusals import spoken
-from schuler_bench.plots.limits import requirement_words
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
 from schuler_bench.plots.varied import factors_text
 from schuler_bench.views.tune.confirmation import confirmation_html
 
 if TYPE_CHECKING:
-    from navcore.design.tune import Tuned
-    from schuler_bench.jobs.designer import TuningTask
+    from navcore.design.tuned import Tuned
+    from navcore.questions.tune import TuneQuestion
 
 _HERE = Text("in this scenario itself")
 
 
-def proposal_html(task: TuningTask, tuned: Tuned, *, accepted: bool = False) -> str:
+def proposal_html(task: TuneQuestion, tuned: Tuned, *, accepted: bool = False) -> str:
     """Tables of the present and the proposed setting, of their runs, and sentences about the optimum."""
     quantity = QUANTITIES[task.objective]
     label, size = quantity.names.get(tuned.judged, quantity.label), quantity.size
     rows = []
-    now = present(task.scenario, read_varied(task.scenario, task.vary)).tolist()
+    now = present(task.scenario, read_varied(task.scenario, task.vary, task.beyond_sliders)).tolist()
     for (field, value), before in zip(tuned.best.items(), now, strict=True):
         low, high = tuned.flat.get(field, (value, value))
         rows.append(
@@ -67,7 +66,7 @@ def proposal_html(task: TuningTask, tuned: Tuned, *, accepted: bool = False) -> 
     )
 
 
-def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
+def sentences_about(task: TuneQuestion, tuned: Tuned) -> list[str]:
     """Write sentences about the optimum."""
     unit, size = QUANTITIES[task.objective].shown, QUANTITIES[task.objective].size
     sentences = []
@@ -94,17 +93,18 @@ def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
         sentences.append(
             Text(
                 "The requirement {requirement_words} holds the optimum back.{more}",
-                requirement_words=requirement_words(text),
+                requirement_words=spoken(text),
                 more=more,
             )
         )
     if tuned.default_limits:
-        kept = Text.joined(", ", map(requirement_words, tuned.default_limits))
+        kept = Text.joined(", ", map(spoken, tuned.default_limits))
         sentences.append(Text("Kept by default: {kept}.", kept=kept))
+    sentences += tuned.assumptions()
     return [*sentences, *(spoken(text) for text in tuned.warnings if text not in _doubts(task, tuned))]
 
 
-def _over(task: TuningTask, tuned: Tuned) -> Iterator[str]:
+def _over(task: TuneQuestion, tuned: Tuned) -> Iterator[str]:
     """Say what the setting gives over the points of a study, and what that costs in the scenario itself."""
     from navcore.study.robust_tune import TunedOver
 
@@ -128,7 +128,7 @@ def _over(task: TuningTask, tuned: Tuned) -> Iterator[str]:
     )
 
 
-def doubts(task: TuningTask, tuned: Tuned) -> list[str]:
+def doubts(task: TuneQuestion, tuned: Tuned) -> list[str]:
     """Say what speaks against the proposal in its runs."""
     if tuned.confirmed is None:
         return [Text("No run has confirmed this setting.")]
@@ -137,7 +137,7 @@ def doubts(task: TuningTask, tuned: Tuned) -> list[str]:
     return [Text(*text.forms, **(text.values | {"name": name})) for text in _doubts(task, tuned)]
 
 
-def _doubts(task: TuningTask, tuned: Tuned) -> list[Text]:
+def _doubts(task: TuneQuestion, tuned: Tuned) -> list[Text]:
     verdict = "" if tuned.confirmed is None else tuned.confirmed.verdict(task.objective)
     return [verdict] if isinstance(verdict, Text) else []
 

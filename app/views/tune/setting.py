@@ -1,20 +1,20 @@
 """Search for the best setting of the selected method, and accept or discard what comes out."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
-from navcore.design.default_limits import limits_by_default
-from navcore.design.measures import read_objective, read_requirement
+from navcore.design.default_limits import left_to_runs, limits_by_default, own_limits
+from navcore.design.measures import read_objective
 from navcore.design.vary import network_not_in_force, tunable_fields
 from navcore.foundation.text import Text
-from navcore.quantities import QUANTITIES, searched
+from navcore.quantities import QUANTITIES
+from navcore.questions.profile import ProfileQuestion
+from navcore.questions.tune import TuneQuestion
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import Requirement
-from schuler_bench.jobs.designer import TuningTask
-from schuler_bench.jobs.refusals import OBJECTIVE, VARY
-from schuler_bench.plots.limits import limit_words, requirement_words
+from navcore.scenario.stochastic import stochastic_model
+from schuler_bench.plots.limits import limit_words
 from schuler_bench.session.display import OBJECTIVES, Display
 from schuler_bench.shell import notices
 from schuler_bench.shell.places import PlacesChooser
@@ -25,7 +25,7 @@ from schuler_bench.views.tune.proposal import doubts, proposal_html
 
 TUNE, STOP = Text("Tune"), Text("Stop tuning")
 ACCEPT, DISCARD, UNDO = Text("Accept the proposal"), Text("Discard"), Text("Undo the proposal")
-KEEP, BEYOND = Text("keep settling and growth bounded"), Text("search beyond the sliders")
+_BOXES = {one.name: one for one in TuneQuestion.options()}
 ALL = Text("all parameters")
 _CURVES = Text("Curves: what is tuned for over one parameter, the others as they are; dot: present setting.")
 
@@ -41,33 +41,23 @@ class SettingPanel:
 
     def __init__(self, frame: Frame) -> None:
         self.frame, self.session = frame, frame.session
-        self._designer = frame.session.searches.designer
+        self._designer = frame.session.searches.asking["tune"]
         self._fields: dict[str, tuple[str, ...]] = {}
 
     def build(self) -> None:
         """Make the controls."""
         gui = self.frame.gui
         self._fields = {}
+        objective, vary, keep, beyond = (
+            _BOXES[name] for name in ("objective", "vary", "default_limits", "beyond_sliders")
+        )
         self._objective: Any = gui.add_dropdown(
-            OBJECTIVE, tuple(QUANTITIES[name].label for name in OBJECTIVES), hint=Text("What is to be least.")
+            objective.label, tuple(QUANTITIES[name].label for name in OBJECTIVES), hint=objective.help
         )
-        self._vary: Any = gui.add_dropdown(
-            VARY, (ALL,), hint=Text("Fields of the selected method that the search may move.")
-        )
-        self._keep: Any = gui.add_checkbox(
-            KEEP,
-            True,
-            hint=Text(
-                "The search keeps a limit on settling and on growth where the tab Requirements has none: "
-                "without them it may tune the damping away."
-            ),
-        )
+        self._vary: Any = gui.add_dropdown(vary.label, (ALL,), hint=vary.help)
+        self._keep: Any = gui.add_checkbox(keep.label, True, hint=keep.help)
         self._over = PlacesChooser(self.frame)
-        self._beyond: Any = gui.add_checkbox(
-            BEYOND,
-            False,
-            hint=Text("All that the fields allow is searched, not only what the sliders reach."),
-        )
+        self._beyond: Any = gui.add_checkbox(beyond.label, False, hint=beyond.help)
         hint = Text(
             "Searches for the setting that makes the objective least and keeps the requirements, then runs "
             "both settings on 32 seeds."
@@ -141,18 +131,35 @@ class SettingPanel:
             self._vary.options = tuple(choices)
             self._vary.value = ALL
 
-    def task(self, scenario: Scenario, *, limited: bool = True) -> TuningTask | None:
-        """Task of what is chosen; None where no parameter acts.
+    def task(self, scenario: Scenario) -> TuneQuestion | None:
+        """Make the question of what is chosen; None where no parameter acts."""
+        fields = self._varied(scenario)
+        if not fields:
+            return None
+        given = self._chosen(scenario, fields) | {"default_limits": self.session.display.default_limits}
+        return TuneQuestion.ask(given | {"over": self._over.study})
 
-        A picture may be of another scenario than the chooser, which follows later.
-        """
-        selected, display = self.session.selected, self.session.display
+    def profile(self, scenario: Scenario) -> ProfileQuestion | None:
+        """Make the question of the curves before a search; None where no parameter acts."""
+        fields = self._varied(scenario)
+        return ProfileQuestion.ask(self._chosen(scenario, fields)) if fields else None
+
+    def _chosen(self, scenario: Scenario, fields: tuple[str, ...]) -> dict[str, Any]:
+        display = self.session.display
+        return {
+            "scenario": scenario,
+            "objective": display.objective,
+            "vary": fields,
+            # without a random error every setting is alike in the steady state
+            "along": stochastic_model(scenario).silent,
+            "beyond_sliders": display.beyond_sliders,
+        }
+
+    def _varied(self, scenario: Scenario) -> tuple[str, ...]:
+        """Chosen fields; a picture may be of another scenario than the chooser, which follows later."""
+        selected = self.session.selected
         offered = tunable_fields(scenario, selected) if selected < len(scenario.method) else ()
-        fields = tuple(field for field in self._fields.get(self._vary.value, ()) if field in offered)
-        limits = requirements_as_text(scenario.requirement) if limited else ()
-        kept = limited and display.default_limits
-        whole = display.beyond_sliders
-        return TuningTask(scenario, display.objective, fields, limits, kept, whole) if fields else None
+        return tuple(field for field in self._fields.get(self._vary.value, ()) if field in offered)
 
     @property
     def idle(self) -> bool:
@@ -162,16 +169,16 @@ class SettingPanel:
     def begin(self) -> None:
         """Search for the best setting of the selected method."""
         session = self.session
-        with session.lock:
-            scenario = session.scenario
-            task = self.task(scenario)
-        if task is None:
+        with notices.told(self.frame.client, Text("The setting cannot be tuned"), self.frame.refresh):
+            with session.lock:
+                scenario = session.scenario
+                task = self.task(scenario)
+            if task is not None:
+                self._designer.begin(task)
+                return
             reason = network_not_in_force(scenario.method[session.selected])
             lines = [reason or Text("The network of this method has no parameter to vary.")]
             notices.tell(self.frame.client, Text("Nothing to tune"), lines)
-            return
-        with notices.told(self.frame.client, Text("The setting cannot be tuned"), self.frame.refresh):
-            self._designer.begin(replace(task, over=self._over.study))
 
     def _take(self) -> None:
         """Put the proposal into the present scenario."""
@@ -193,22 +200,10 @@ def left_out_html(method: Method) -> str:
     return notices.note([Text("Not to be varied: {reason}.", reason=reason)] if reason else [], "info")
 
 
-def requirements_as_text(requirements: Sequence[Requirement]) -> tuple[str, ...]:
-    """Limits of a scenario as `navcore.design.measures.read_requirement` reads them, SI.
-
-    A limit of one run is kept as that of the ensemble, where there is one.
-    """
-    return tuple(
-        f"{row.key}{one.sense}{one.limit_si:.12g}"
-        for one in requirements
-        if (row := searched(one.quantity)) is not None
-    )
-
-
 def limits_told(scenario: Scenario, display: Display) -> str:
     """Which limits a search keeps by requirement and by default, and which it cannot."""
+    own = own_limits(scenario.requirement, ())
     told = requirements_told(scenario.requirement)
-    own = [read_requirement(text) for text in requirements_as_text(scenario.requirement)]
     defaults = limits_by_default(read_objective(display.objective), own) if display.default_limits else []
     if not defaults:
         return told
@@ -218,10 +213,9 @@ def limits_told(scenario: Scenario, display: Display) -> str:
 
 def requirements_told(requirements: Sequence[Requirement]) -> str:
     """Which limits a search keeps, and which of the tab Requirements it cannot."""
-    kept = [requirement_words(text) for text in requirements_as_text(requirements)]
-    other = [
-        limit_words(one.quantity, one.limit_si) for one in requirements if searched(one.quantity) is None
-    ]
+    kept = [limit_words(one.name, one.limit) for one in own_limits(requirements, ())]
+    left = left_to_runs(requirements)
+    other = [limit_words(one.quantity, one.limit_si) for one in requirements if one.quantity in left]
     text = (
         Text("Requirements that are kept: {kept}.", kept=Text.joined(", ", kept))
         if kept

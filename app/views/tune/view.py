@@ -3,6 +3,7 @@
 from typing import Any
 
 from navcore.design.pareto import Pareto, measured
+from navcore.design.profile import Profiles
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from schuler_bench.plots.plotly_data import PlotlyFigure
@@ -33,7 +34,7 @@ class TuneView(PlotlyView):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._setting, self._finder = SettingPanel(frame), FrontsPanel(frame)
-        self._profiles = frame.session.searches.profiles
+        self._profiles = frame.session.searches.asking["profile"]
         self._drawn: Pareto | None = None
         self._drawn_profiles: object = None
         self._idle = True
@@ -94,9 +95,14 @@ class TuneView(PlotlyView):
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Pareto fronts, with the present design; or the objective over each parameter."""
         del both
+        scenario = found.run.scenario
         if found.display.search != "fronts":
-            return self._curves(found)
-        scenario, index, objectives = found.run.scenario, self._finder.method, self._finder.objectives
+            known, index = self._curves(found), found.selected
+            if known is None:
+                return PlotlyFigure()
+            color = found.run.methods[index].place
+            return profiles_figure(known.curves, known.of, scenario.method[index], color, self.aspect)
+        index, objectives = self._finder.method, self._finder.objectives
         return fronts_figure(
             self._finder.found,
             objectives,
@@ -108,22 +114,28 @@ class TuneView(PlotlyView):
             growth=found.run.methods[min(index, len(found.run.methods) - 1)].growth_per_s,
         )
 
-    def _curves(self, found: Shown) -> PlotlyFigure:
-        scenario, index = found.run.scenario, found.selected
-        task = self._setting.task(scenario, limited=False) if self._setting.idle else None
-        if task is None or task.method != index:
-            return PlotlyFigure()
-        self._profiles.follow(task)
-        known = self._profiles.beside(task)
-        if not known:
-            return PlotlyFigure()
-        color = found.run.methods[index].place
-        return profiles_figure(known, task.objective, scenario.method[index], color, self.aspect)
+    def _curves(self, found: Shown) -> Profiles | None:
+        """Objective over each parameter of the selected method; None while a proposal takes their place."""
+        asked, of = self._setting.profile(found.run.scenario), self._profiles.asked
+        if asked is None or of is None or asked.method != found.selected or not self._setting.idle:
+            return None
+        fits = (of.objective, of.vary) == (asked.objective, asked.vary)
+        known: Profiles | None = self._profiles.result
+        return known if fits and known is not None and known.curves else None
 
     def picture(self, found: Shown) -> PlotlyFigure:
         """Make the picture; a figure without anything while there are no curves, or a proposal."""
-        fronts = found.display.search == "fronts"
-        return super().picture(found) if fronts or self._curves(found) else PlotlyFigure()
+        empty = found.display.search != "fronts" and self._curves(found) is None
+        return PlotlyFigure() if empty else super().picture(found)
+
+    def show(self, picture: PlotlyFigure) -> None:
+        """Send the picture, and have the curves measured."""
+        super().show(picture)
+        run = self.session.run
+        if run is not None and not self._of_fronts and self._setting.idle:
+            asked = self._setting.profile(run.scenario)
+            if asked is not None:
+                self._profiles.follow(asked)
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the fronts, to be saved; raises LookupError while none have been found."""
