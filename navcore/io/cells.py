@@ -2,23 +2,24 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.numbers import NotANumber, read_number
 from navcore.foundation.text import Text
 from navcore.io.columns import limited
 from navcore.io.stamps import StampReader, day_comes_first
-from navcore.io.written_units import UNITS
+from navcore.io.times.counts import Ambiguous, read_counts
 
 _EMPTY = frozenset(("", "-", "--", "na", "n/a", "null", "none"))
 _HEMISPHERE = re.compile(r"[\d.]{1,20}[ \d.'\"°:]{0,30} ?[NSEWnsew]")
 _NUMBER = re.compile(r"\d{1,9}(?:\.\d{0,15})?")
-_UNIX_FROM = 1e8
-"""Numbers from here on are Unix time (1973), smaller ones seconds of the file's own."""
 _DAY = 86400.0
+_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
+_LOOKED_AT = 1000
 
 
 def is_empty(cell: str) -> bool:
@@ -41,6 +42,25 @@ def is_time(cell: str) -> bool:
         return math.isfinite(float(cell))
     except ValueError:
         return _moment(cell.strip(), StampReader()) is not None
+
+
+def pointed(cells: Sequence[str], decimal: str) -> Sequence[str]:
+    """Cells whose decimal commas are points; times with commas between date and time stay as they are."""
+    if decimal != ",":
+        return cells
+    return [cell.replace(",", ".") if _COMMA.fullmatch(cell.strip()) else cell for cell in cells]
+
+
+def uses_decimal_comma(columns: Iterable[Sequence[str]]) -> bool:
+    """Whether the first cells of a table that no comma parts have decimal commas, and none a point."""
+    found = False
+    for cells in columns:
+        commas = [cell for cell in cells[:_LOOKED_AT] if _COMMA.fullmatch(cell.strip())]
+        points = [cell for cell in cells[:_LOOKED_AT] if "." in cell and is_number(cell)]
+        if commas and points:
+            return False
+        found |= bool(commas)
+    return found
 
 
 def numbers(
@@ -68,8 +88,10 @@ def numbers(
                 empty[index] = True
             elif (degrees := _degrees(cell.strip())) is not None:
                 values[index] = degrees
+            elif "," not in cell and (number := _typed(cell)) is not None:
+                values[index] = number
             else:
-                hint = Text(" (decimal comma?)") if "," in cell else ""
+                hint = Text(" (decimal comma? Say so by decimal of a map)") if "," in cell else ""
                 allowed = Text("is not a number{hint}", hint=hint)
                 faults.append(
                     Fault(Text("{where}, row {rows}", where=where, rows=rows[index]), name, cell, allowed)
@@ -77,6 +99,14 @@ def numbers(
     if faults:
         raise InputError(limited(where, faults))
     return values, empty
+
+
+def _typed(cell: str) -> float | None:
+    """Number with another minus sign, spaces between its digits or quotes; None for others."""
+    try:
+        return read_number(cell)
+    except NotANumber:
+        return None
 
 
 def _degrees(cell: str) -> float | None:
@@ -107,26 +137,12 @@ def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> t
         parsed = np.array(cells, dtype=float)
     except ValueError:
         return _written_times(where, name, cells, rows)
-    return unix_or_elapsed(parsed)
-
-
-def unix_or_elapsed(values: np.ndarray, unit: str = "") -> tuple[np.ndarray, bool]:
-    """Numbers of time: Unix time in s, ms, us or ns by their size, or s since the file's own zero.
-
-    With a ``unit`` (a key of `navcore.io.written_units.UNITS`) that the column names, they are in it.
-    """
-    if unit:
-        seconds = values * UNITS["time"][unit]
-        known = seconds[~np.isnan(seconds)]
-        return seconds, bool(known.size) and float(np.median(np.abs(known))) >= _UNIX_FROM
-    known = values[~np.isnan(values)]
-    size = float(np.median(np.abs(known))) if known.size else 0.0
-    if not size >= _UNIX_FROM:
-        return values, False
-    steps = 0
-    while size >= _UNIX_FROM * 1e3 and steps < 3:
-        size, steps = size / 1e3, steps + 1
-    return values / 1e3**steps, True
+    try:
+        found = read_counts(parsed)
+    except Ambiguous as either:
+        allowed = Text("may count {either}: give ISO 8601, or say time.unit by a map", either=str(either))
+        raise InputError(Fault(where, name, cells[0], allowed)) from None
+    return found.time_s, found.dated
 
 
 def _written_times(

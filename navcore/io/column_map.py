@@ -31,6 +31,7 @@ from navcore.foundation.written_toml import read_toml_text
 from navcore.io.column_names import QUANTITIES, Column, known_columns, plain_name
 from navcore.io.columns import listed
 from navcore.io.imu_columns import DIMENSIONS, ImuColumn, imu_column
+from navcore.io.times.counts import EPOCHS, zero_of
 from navcore.io.written_units import UNITS, unit_of, written
 
 LARGEST_MAP_BYTES = 65536
@@ -49,7 +50,11 @@ class TimeMap(Parameters):
         Name in the header; several are joined by a space (date and time, GPS week and seconds).
     unit : str
         ``iso``; ``s``, ``ms``, ``us``, ``ns``, ``min``, ``h`` or ``day``, of Unix time or of the file's own
-        zero; ``gps_week_s``; or a format of `datetime.strptime`. Empty: as it would be guessed.
+        zero; with an epoch, ``days since 1899-12-30``; ``gps_week_s``; or a format of `datetime.strptime`.
+        Empty: as it would be guessed.
+    epoch : str
+        From which the numbers count: a date, or a name such as ``excel``, ``matlab``, ``gps``, ``ntp``.
+        Empty: by the size of the numbers.
     zone : str
         Of dates and times that state none: ``Europe/Berlin``, ``+02:00``. Empty: UTC.
     """
@@ -57,6 +62,18 @@ class TimeMap(Parameters):
     column: str | tuple[str, ...]
     unit: str = ""
     zone: str = ""
+    epoch: str = ""
+
+    @property
+    def zero(self) -> str:
+        """Epoch of counts, from either field; empty without one."""
+        return self.epoch.strip() or self._since[1]
+
+    @property
+    def _since(self) -> tuple[str, str]:
+        """Unit and epoch of ``days since 1970-01-01``."""
+        unit, _, epoch = self.unit.partition(" since ")
+        return unit.strip(), epoch.strip()
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -66,12 +83,12 @@ class TimeMap(Parameters):
     @property
     def stated(self) -> bool:
         """Whether the map says how the time is written; else it is guessed."""
-        return bool(self.unit or self.zone)
+        return bool(self.unit or self.zone or self.epoch)
 
     @property
     def numeric(self) -> str:
         """Key of `UNITS` for a column of numbers; empty for others."""
-        return unit_of(plain_name(self.unit), "time") if "%" not in self.unit else ""
+        return unit_of(plain_name(self._since[0]), "time") if "%" not in self.unit else ""
 
 
 class QuantityMap(Parameters):
@@ -261,6 +278,15 @@ def _time_faults(time: TimeMap, where: str) -> list[Fault]:
         if time.numeric or time.unit == GPS_WEEK:
             allowed = Text("must be left out: counts of {unit} have no time zone", unit=time.unit)
             faults.append(Fault(where, "time.zone", time.zone, allowed))
+    if time.zero:
+        try:
+            zero_of(time.zero)
+        except ValueError:
+            allowed = Text("must be a date such as 1899-12-30, or one of {names}", names=", ".join(EPOCHS))
+            faults.append(Fault(where, "time.epoch", time.zero, allowed))
+        if time.unit and not time.numeric:
+            allowed = Text("must be left out: times of the form {unit} have a date", unit=time.unit)
+            faults.append(Fault(where, "time.epoch", time.zero, allowed))
     if not (time.unit in ("", ISO, GPS_WEEK) or time.numeric or "%" in time.unit):
         allowed = Text(
             "must be iso, {units}, gps_week_s, or a format such as %d.%m.%Y %H:%M:%S",

@@ -202,12 +202,31 @@ def misfits(names: Sequence[str]) -> list[Column]:
     return [column for column in columns if column is not None and column.misfit]
 
 
+_FIRST = -100
+"""Rank of the time of a message itself, before that at which it was recorded."""
 _LAST = 1000
 """Rank of a name whose brackets are not understood, behind all others."""
 
 
+_OF_PATH = 50
+"""Rank of a name that is the last part of a path, behind those that stand alone."""
+
+
 def _meaning(index: int, name: str) -> tuple[int, Column | None]:
-    """Rank (0 the usual name) and what the column holds."""
+    """Rank (0 the usual name) and what the column holds; of a path, ``ref.lat``, its last part says it."""
+    rank, column = _meaning_of(index, name)
+    parts = re.split(r"[./]", name.strip()) if "." in name or name.startswith("/") else []
+    for begin in range(1, len(parts)) if column is None else ():
+        rank, column = _meaning_of(index, ".".join(parts[begin:]))
+        if column is not None:
+            first = _FIRST if parts[-2:] == ["header", "stamp"] else _OF_PATH
+            return rank + first, replace(column, name=name.strip())
+    if column is not None and parts[-2:] == ["header", "stamp"]:
+        rank += _FIRST
+    return rank, column
+
+
+def _meaning_of(index: int, name: str) -> tuple[int, Column | None]:
     bare, texts = without_brackets(name)
     plain = plain_name(bare)
     for words, suffix in ((plain, ""), *_without_unit(plain)):

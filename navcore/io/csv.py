@@ -5,7 +5,7 @@ The standard library's reader and numpy are enough, name the row of a bad cell, 
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,9 +13,19 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import is_empty, numbers, times
+from navcore.io.cells import is_empty, numbers, pointed, times, uses_decimal_comma
 from navcore.io.column_map import ColumnMap
-from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
+from navcore.io.column_names import (
+    CLOCK,
+    DATE,
+    QUANTITIES,
+    SECONDS,
+    UNIX,
+    UTC,
+    Column,
+    known_columns,
+    plain_name,
+)
 from navcore.io.columns import (
     MOST_CELLS,
     MOST_COLUMNS,
@@ -26,14 +36,16 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
-from navcore.io.epochs import GPS_EPOCH_S, gps_to_unix, numeric_times
+from navcore.io.epochs import numeric_times
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
 from navcore.io.mapped_rows import mapped_layout, skip_bad
 from navcore.io.mapped_times import MappedClock
 from navcore.io.rows import Rows, split_line
-from navcore.io.series import Recording
+from navcore.io.series import LeftOut, Recording
 from navcore.io.source import read_text
+from navcore.io.times.counts import GPS_EPOCH_S, gps_to_unix
+from navcore.io.written_units import UNITS, unit_of
 
 _COMMENTS = ("#", "%", "//")
 _SEPARATORS = ",;\t|"
@@ -45,10 +57,11 @@ _HEAD_LINES = 60
 def recognises(candidate: Candidate) -> bool:
     """Whether a header names a known column, or the lines look like a table of numbers."""
     head = _head(candidate.text)
-    separator, _, header = _layout(head)
+    separator, header_line, header = _layout(head)
     if known_columns(header[:MOST_COLUMNS]):
         return True
-    following = [split_line(line, separator) for line in head if not line.startswith(_COMMENTS)][1:6]
+    rows = head[head.index(header_line) + 1 :] if header_line in head else []
+    following = [split_line(line, separator) for line in rows if not line.startswith(_COMMENTS)][:5]
     alike = [row for row in following if len(row) == len(header) and _holds_number(row, separator)]
     return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
@@ -68,7 +81,7 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
         skip_bad(rows, column_map)
     if not rows.numbers:
         raise InputError(Fault(path.name, "", None, Text("a header but no rows")))
-    table = _table(path.name, rows, column_map)
+    table = _table(path.name, rows, column_map, lambda: _row_ids(path.name, content.text, rows))
     others = ["" if index in rows.heeded else name for index, name in enumerate(rows.header)]
     unused = column_warnings(others, rows.columns)
     warnings = (*content.warnings(), *rows.warnings, *unused, *table.warnings)
@@ -87,8 +100,8 @@ def _separator(line: str) -> str:
 def _layout(head: list[str]) -> tuple[str, str, list[str]]:
     """Separator, header line and header cells.
 
-    The header is the first line that names a time and a quantity, be it a comment; else the first line that
-    is no comment.
+    The header is the first line that names a time and a quantity, be it a comment; else the line before the
+    first row of numbers, as long as the row; else the first line that is no comment.
     """
     plain = next((line for line in head if not line.startswith(_COMMENTS)), "")
     for line in head:
@@ -98,7 +111,43 @@ def _layout(head: list[str]) -> tuple[str, str, list[str]]:
         known = known_columns(cells[:MOST_COLUMNS])
         if known.keys() & QUANTITIES.keys() and {UTC, UNIX, SECONDS, CLOCK} & known.keys():
             return separator, line, cells
+    above = _above_the_rows(head)
+    if above is not None:
+        return above
     return _separator(plain), plain, split_line(plain, _separator(plain))
+
+
+def _above_the_rows(head: list[str]) -> tuple[str, str, list[str]] | None:
+    """Separator, line and cells of the line before the first row; None where there is none.
+
+    Of two lines that may be it, the lower one gives the units of the upper one.
+    """
+    for at, line in enumerate(head):
+        separator = _separator(line)
+        cells = split_line(line, separator)
+        below = [split_line(one, separator) for one in head[at + 1 : at + 2]]
+        alone = any(len(one) != len(cells) or not _is_row(one, separator) for one in below)
+        if line.startswith(_COMMENTS) or alone or not _is_row(cells, separator):
+            continue
+        found: list[tuple[str, str, list[str]]] = []
+        for above in reversed(head[max(0, at - 2) : at]):
+            names = split_line(above.lstrip("#%/ "), separator)
+            if len(names) != len(cells) or _is_row(names, separator):
+                break
+            found.append((separator, above, names))
+        units = (
+            len(found) > 1
+            and _is_units(found[0][2])
+            and not known_columns(found[0][2]).keys() & QUANTITIES.keys()
+        )
+        return found[1] if units else found[0] if found else None
+    return None
+
+
+def _is_row(cells: list[str], separator: str) -> bool:
+    """Whether at least half of two cells or more are numbers."""
+    given = [cell if separator == "," else cell.replace(",", ".") for cell in cells if cell.strip()]
+    return len(cells) > 1 and 2 * sum(map(_is_number, given)) >= max(len(given), 1) and bool(given)
 
 
 def layout(text: str) -> tuple[str, str, list[str]]:
@@ -122,6 +171,14 @@ def _is_number(cell: str) -> bool:
 def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
     if column_map is None:
         separator, header_line, header = _layout(_head(text))
+        if _is_row(header, separator) and not known_columns(header[:MOST_COLUMNS]):
+            allowed = Text(
+                "has no line with the names of the columns above its rows (the first one is {first}): put "
+                "one there, "
+                "such as utc,lat_deg,lon_deg,heading_deg",
+                first=header_line[:80],
+            )
+            raise InputError(Fault(where, "", None, allowed))
         rows = Rows(header, require_columns(where, header))
         clock: list[int] = []
     else:
@@ -133,6 +190,7 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
         rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign != 1.0}
         if pairs := pair_faults(where, rows.columns):
             raise InputError(pairs)
+    rows.layout = separator, header_line
     _refuse_size(where, text, len(rows.columns))
     width, faults = len(header), []
     columns = list(rows.columns.values())
@@ -157,6 +215,9 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             rows.cells[UTC][-1] = " ".join(row[index].strip() for index in clock)
         for index in beside:
             rows.sides.setdefault(index, []).append(row[index])
+    if column_map is None and separator != "," and uses_decimal_comma(rows.cells.values()):
+        rows.decimal = ","
+        rows.warnings.append(Text("numbers have decimal commas"))
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
         rows.warnings.append(Text("the last row is cut off: left out"))
         faults = []
@@ -217,23 +278,22 @@ def _is_units(row: list[str]) -> bool:
     return (
         any(cell.strip() for cell in row)
         and not any(cell.strip()[:1] in "+-.0123456789" or is_empty(cell) or _is_number(cell) for cell in row)
-        and any(
-            known_columns([Text("lat ({cell})", cell=cell), Text("sog ({cell})", cell=cell)])
-            .get("sog", _NONE)
-            .unit_given
-            for cell in row
-        )
+        and any(unit_of(plain_name(cell.strip("()[] ")), dimension) for cell in row for dimension in UNITS)
     )
-
-
-_NONE = Column(0, "", "sog", "", unit_given=False)
 
 
 def _is_last(text: str, fault: Fault) -> bool:
     return fault.where.endswith(f"row {len(text.rstrip().split(chr(10)))}")
 
 
-def _table(where: str, rows: Rows, column_map: ColumnMap | None) -> Table:
+def _row_ids(where: str, text: str, rows: Rows) -> dict[int, int]:
+    """Numbers of the rows by that of their line: equal for rows that are equal in every cell."""
+    seen: dict[tuple[str, ...], int] = {}
+    lines = _after_header(where, text, *rows.layout)
+    return {number: seen.setdefault(tuple(row), len(seen)) for number, row in lines}
+
+
+def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[], dict[int, int]]) -> Table:
     faults: list[Fault] = []
     values: dict[str, np.ndarray] = {}
     missing: dict[str, np.ndarray] = {}
@@ -246,8 +306,7 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None) -> Table:
     numbered = [rows.numbers[i] for i in kept] if untimed else rows.numbers
     for stem in (stem for stem in QUANTITIES if stem in rows.columns):
         cells = [rows.cells[stem][i] for i in kept] if untimed else rows.cells[stem]
-        if rows.decimal == ",":
-            cells = [cell.replace(",", ".") for cell in cells]
+        cells = pointed(cells, rows.decimal)
         try:
             values[stem], empty = numbers(where, rows.columns[stem].name.lower(), cells, numbered)
         except InputError as error:
@@ -280,6 +339,15 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None) -> Table:
         missing,
         numbered,
         (*notes, *hemispheres),
+        tuple(
+            LeftOut("rows", "", why, count)
+            for why, count in (
+                (Text("without a time"), untimed),
+                (Text("cannot be read"), len(rows.skipped)),
+            )
+            if count
+        ),
+        lambda: (lambda found: np.array([found[number] for number in numbered]))(ids()),
     )
 
 
@@ -326,7 +394,7 @@ def _timing(
     column = _clock_column(rows.columns)
     numbered = [rows.numbers[i] for i in kept]
     name = column.name.lower()
-    cells = [rows.cells[column.stem][i] for i in kept]
+    cells = pointed([rows.cells[column.stem][i] for i in kept], rows.decimal)
     if column_map is not None and column_map.time.stated:
         clock = MappedClock(column_map.time, rows.decimal)
         time_s, dated = clock.read(where, cells, numbered)
@@ -349,7 +417,7 @@ def _timing(
     return time_s, dated, name
 
 
-def _as_numbers(cells: list[str]) -> np.ndarray | None:
+def _as_numbers(cells: Sequence[str]) -> np.ndarray | None:
     try:
         return np.array(cells, dtype=float)
     except ValueError:

@@ -9,11 +9,12 @@ from zoneinfo import ZoneInfo
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.numbers import read_number
 from navcore.foundation.text import Text
-from navcore.io.cells import unix_or_elapsed
 from navcore.io.column_map import GPS_WEEK, ISO, TimeMap, zone_of
 from navcore.io.columns import limited
-from navcore.io.epochs import gps_to_unix
+from navcore.io.times.counts import Ambiguous, gps_to_unix, read_counts, rolled_weeks, since
+from navcore.io.written_units import UNITS
 
 _WEEK_S = 604800.0
 _MOST_WEEKS = 10_000
@@ -35,6 +36,7 @@ class MappedClock:
         self._time = time
         self._zone = zone_of(time.zone) if time.zone else 0.0
         self._last = -np.inf
+        self._told = ""
         self.twice = 0
         """Times read so far that local clocks show twice."""
         self._offsets: dict[tuple[int, ...], tuple[float, float]] = {}
@@ -67,9 +69,22 @@ class MappedClock:
     def counted(self, parsed: np.ndarray) -> tuple[np.ndarray, bool]:
         """Times of `seconds`, shape (n,), as s, and whether they are dated."""
         if self._time.unit == GPS_WEEK:
-            return gps_to_unix(parsed), True
+            weeks = np.floor(parsed / _WEEK_S)
+            gps_s, rolled = rolled_weeks(weeks, parsed - weeks * _WEEK_S)
+            if rolled:
+                self._told = Text("the GPS weeks have rolled over: {rolled} added", rolled=rolled)
+            return gps_to_unix(gps_s), True
+        if self._time.zero:
+            return since(parsed, UNITS["time"][self._time.numeric or "s"], self._time.zero), True
         if self._time.numeric:
-            return unix_or_elapsed(parsed, self._time.numeric)
+            try:
+                found = read_counts(parsed, self._time.numeric)
+            except Ambiguous as either:
+                allowed = Text("may count {either}: say time.epoch too", either=str(either))
+                raise InputError(Fault("", "time.unit", self._time.unit, allowed)) from None
+            if found.told:
+                self._told = Text("the times count {what}", what=found.told)
+            return found.time_s, found.dated
         return parsed, True
 
     def seconds(self, cell: str) -> float:
@@ -83,7 +98,7 @@ class MappedClock:
             if not (0.0 <= weeks < _MOST_WEEKS and 0.0 <= seconds <= _WEEK_S):
                 raise ValueError(Text("a week and the seconds in it, 0 to 604800"))
             return weeks * _WEEK_S + seconds
-        if self._time.numeric:
+        if self._time.numeric or self._time.zero:
             return self._number(cell)
         text = cell.strip()
         moment = (
@@ -98,18 +113,20 @@ class MappedClock:
 
     def warnings(self) -> list[str]:
         """Assumptions about the times that were read."""
+        told = [self._told] if self._told else []
         if not self.twice:
-            return []
+            return told
         return [
+            *told,
             Text.plural(
                 "{count} time is of the hour that local clocks show twice: taken by the order of rows",
                 "{count} times are of the hour that local clocks show twice: taken by the order of rows",
                 count=self.twice,
-            )
+            ),
         ]
 
     def _number(self, text: str) -> float:
-        return float(text.replace(",", ".") if self._decimal == "," else text)
+        return read_number(text, self._decimal)
 
     def _utc(self, moment: datetime) -> float:
         """UTC in s of a local time; of an hour that comes twice the first that is not before the last row."""

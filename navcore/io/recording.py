@@ -16,8 +16,9 @@ from navcore.foundation.units import HOUR
 from navcore.io.column_map import ColumnMap, map_beside, read_map
 from navcore.io.formats import format_of, mapped_format
 from navcore.io.placeholders import without_zero_places
-from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
+from navcore.io.series import GAP_FACTOR, LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.io.source import require_file
+from navcore.io.times.doubts import span_text
 from navcore.io.times.steps import reason_of
 
 PathLike = str | os.PathLike[str]
@@ -201,6 +202,65 @@ def _apart(streams: list[Series]) -> str:
     reach = max(s.time_s[-1] - s.time_s[0] for s in streams) + 2.0 * LONGEST_REACH_S
     reason = reason_of(last - first, reach, last if streams[0].dated else 0.0)
     return Text("; they lie apart by {reason}", reason=reason) if reason else ""
+
+
+MOST_BRIDGED = 0.1
+"""Share of a run up to which a gap of its track or heading is bridged by the smoothing."""
+
+
+def require_no_gap(
+    streams: Iterable[Series], start_s: float, duration_s: float, most: float, file: object
+) -> None:
+    """Refuse a run in which a stream is silent for more than a share of it.
+
+    Parameters
+    ----------
+    streams : iterable of Series
+    start_s, duration_s : float
+        UTC of t = 0 and length of the run, s.
+    most : float
+        Share of the run.
+    file : object
+        Value that the fault names, of the field ``file``.
+
+    Raises
+    ------
+    InputError
+        Says the gap, its share, and which part of the recording has no such gap.
+    """
+    faults: list[Fault] = []
+    for stream in streams:
+        edges = np.clip(stream.time_s, start_s, start_s + duration_s)
+        steps = np.diff(edges) if stream.time_s.size > 1 else np.zeros(1)
+        at = int(np.argmax(steps))
+        longest = float(steps[at])
+        usual = GAP_FACTOR * stream.interval_s
+        if longest <= max(most * duration_s, usual):
+            continue
+        whole = np.diff(stream.time_s)
+        breaks = np.flatnonzero(whole > max(most * duration_s, usual))
+        bounds = np.concatenate([[0], breaks + 1, [stream.time_s.size]])
+        pieces = [(float(stream.time_s[e - 1] - stream.time_s[b]), float(stream.time_s[b]))
+                  for b, e in zip(bounds, bounds[1:], strict=False)]  # fmt: skip
+        length, begin = max(pieces)
+        allowed = Text(
+            "{source}: a gap of {gap} from {first} to {last} is {share:.0%} of the run; at most {most:.0%} "
+            "are bridged: "
+            "was the clock set there? The longest piece without such a gap begins at {begin} and lasts "
+            "{length}: cut "
+            "the rest off, or shorten the run",
+            source=stream.source,
+            gap=span_text(float(whole[at])),
+            first=utc_text(stream.time_s[at]),
+            last=utc_text(stream.time_s[at + 1]),
+            share=longest / duration_s,
+            most=most,
+            begin=utc_text(begin),
+            length=span_text(length),
+        )
+        faults.append(Fault("", "file", file, allowed))
+    if faults:
+        raise InputError(faults)
 
 
 def require_cover(window: Window, start_s: float, duration_s: float, what: str, file: object) -> None:

@@ -34,3 +34,5 @@ class Rows:
     """Factors of the columns whose numbers a map turns around or scales."""
     skipped: list[int] = field(default_factory=list)
     """Numbers of the rows that a map lets be left out."""
+    layout: tuple[str, str] = "", ""
+    """Separator and line of the header."""

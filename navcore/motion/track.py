@@ -16,8 +16,9 @@ from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.io.column_map import map_field
-from navcore.io.recording import Window, load, require_cover, shared_window
+from navcore.io.recording import MOST_BRIDGED, Window, load, require_cover, require_no_gap, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
+from navcore.io.times.doubts import gap_words
 from navcore.motion.base import MotionParameters, Streams
 from navcore.motion.filling import sample
 from navcore.motion.kinematics import PIECES, Kinematics
@@ -126,7 +127,10 @@ class TrackMotion(MotionParameters):
         yield from streams.recording.warnings
         for series in streams.series():
             count, longest = series.gaps()
-            if count:
+            doubt = gap_words(series.time_s) if series.dated else ""
+            if doubt:
+                yield Text("{source}: {doubt}", source=series.source, doubt=doubt)
+            elif count:
                 yield Text(
                     "{source}: {count} gaps (longest {longest:.1f} s) bridged by the smoothing",
                     source=series.source,
@@ -176,6 +180,7 @@ class TrackMotion(MotionParameters):
         track = self._smoothed()
         start = track.window.start_s if start_utc is None else start_utc
         require_cover(track.window, start, span_s, Text("the track"), self.file)
+        require_no_gap(self.streams().series(), start, span_s, MOST_BRIDGED, self.file)
         return track
 
     def _pieces(self, track: _Smoothed, start_utc: float | None) -> np.ndarray:

@@ -8,7 +8,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
-from navcore.io.recording import Window, require_cover, shared_window
+from navcore.io.recording import Window, require_cover, require_no_gap, shared_window
 from navcore.io.series import Recording, Series
 from navcore.io.stretches import stretch_warnings
 from navcore.motion.base import MotionParameters
@@ -21,6 +21,9 @@ from navcore.sensors.reference import RECORDED_ONLY, Reference, in_service
 from navcore.sensors.simulated_log import hold_time
 from navcore.sensors.true_state import arm_velocity, horizontal_state, to_navigation
 
+_MOST_SILENT = 0.9
+"""Share of a run in which the log may say nothing at a stretch: nothing bridges that, the run goes on
+undamped."""
 SCHULER_PERIOD_S = 84.4 * 60.0
 _OF_FILES = ("file", "map", *RECORDED_ONLY)
 """Fields of a recorded log alone."""
@@ -102,6 +105,7 @@ def recorded_errors(
     window = shared_window(_streams(reference))
     start = window.start_s if start_utc is None else start_utc
     require_cover(window, start, duration_s, Text("the log"), reference.file)
+    require_no_gap(_streams(reference), start, duration_s, _MOST_SILENT, reference.file)
     elapsed = series.time_s - start
     within = (elapsed >= 0.0) & (elapsed <= duration_s)
     time_s, values = elapsed[within], series.values[within]

@@ -16,12 +16,12 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
-from navcore.io.coarse_stamps import spread
 from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import unpacked
 from navcore.io.containers import is_container, open_container
-from navcore.io.even_stamps import Evenness, evenness
 from navcore.io.imu_table import ImuTable, is_imu_table, read_imu_container, read_imu_table, refuse_lost
+from navcore.io.times.coarse_stamps import spread
+from navcore.io.times.even_stamps import Evenness, evenness
 
 Axes = Literal[
     "rfu", "frd", "flu", "rbd", "rub", "rdf", "lfd", "lbu", "luf", "ldb", "fur", "fdl",

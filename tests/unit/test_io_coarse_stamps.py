@@ -12,7 +12,8 @@ from navcore.io.series import Recording
 
 def _read(folder: Path, times: list[str]) -> Recording:
     path = folder / "log.csv"
-    path.write_text("utc,heading\n" + "".join(f"2022-11-05T04:00:{time}Z,77\n" for time in times))
+    rows = (f"2022-11-05T04:00:{time}Z,{70 + 0.1 * k:.1f}\n" for k, time in enumerate(times))
+    path.write_text("utc,heading\n" + "".join(rows))
     return read_recording(path)
 
 
@@ -30,8 +31,8 @@ def test_a_second_that_begins_before_the_file_has_its_last_rows(tmp_path: Path) 
     assert np.diff(read.heading.time_s) == pytest.approx(0.25, abs=1e-6)
 
 
-def test_a_row_that_is_there_twice_is_still_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="same time as the row before"):
+def test_a_time_that_is_there_twice_with_other_values_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="same as in the row before, with other values"):
         _read(tmp_path, [f"{k:02d}" for k in (0, 1, 2, 2, 3, 4, 5)])
 
 

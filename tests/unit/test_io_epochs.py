@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from navcore.foundation.errors import InputError
-from navcore.io.epochs import gps_to_unix
 from navcore.io.recording import read_recording
 from navcore.io.series import Recording
+from navcore.io.times.counts import gps_to_unix
 
 _START = datetime(2021, 8, 3, 6, 0, tzinfo=UTC).timestamp()
 

@@ -7,8 +7,8 @@ import pytest
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC, DEG
-from navcore.io.even_stamps import evenness
 from navcore.io.imu_columns import imu_column
+from navcore.io.times.even_stamps import evenness
 from navcore.sensors.recorded_imu import Axes, ImuRecord, read_imu
 
 SI = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,fx_mps2,fy_mps2,fz_mps2"

@@ -63,11 +63,11 @@ def test_a_zone_is_heeded_and_no_zone_means_utc(tmp_path):
         ("t_s,heading_deg,heading_deg\n1,2,3\n", ["'heading_deg': column given twice"]),
         ("t_s,heading_deg\n", ["a header but no rows"]),
         ("t_s,heading_deg\n0,1\n1,x\n2,\n", ["row 3: heading_deg = 'x': is not"]),
-        ("t_s;heading_deg\n0;1,5\n", ["row 2: heading_deg = '1,5': is not a number (decimal comma?)"]),
+        ("t_s;heading_deg\n0;1,5\n1;1.5\n", ["row 2: heading_deg = '1,5': is not a number (decimal comma?"]),
         ("t_s,heading_deg\n0,nan\n", ["row 2: heading_deg = nan: must be a number from -360 to 360"]),
         ("t_s,heading_deg\n0,inf\n", ["row 2: heading_deg = inf"]),
         ("t_s,lat_deg,lon_deg\n0,91,0\n", ["row 2: lat_deg = 91.0: must be a number from -90 to 90"]),
-        ("t_s,heading_deg\n0,1\n0,2\n", ["row 3: t_s: time is the same time as the row before"]),
+        ("t_s,heading_deg\n0,1\n0,2\n", ["row 3: t_s: time is the same as in the row before"]),
         ("t_s,heading_deg\n1,1\n0.5,2\n0.1,2\n", ["row 3: t_s: time runs backwards by 0.5 s (2 such rows)"]),
         ("t_s,heading_deg\n0,1,2\n", ["row 2: has 3 cells, the header 2"]),
         ("utc,heading_deg\nyesterday,1\n", ["row 2: utc = 'yesterday': is not an ISO 8601 time"]),
@@ -130,7 +130,7 @@ def test_parquet_faults_are_those_of_a_table(tmp_path):
     write_parquet(tmp_path / "d.parquet", {"t_s": [0, 1, 2], "heading_deg": [1, None, 2]})
     assert read_recording(tmp_path / "d.parquet").heading.time_s.tolist() == [0.0, 2.0]
     assert "row 2: t_s: time is the same" in faults(tmp_path / "a.parquet")[0]
-    assert "is the same time" in faults(tmp_path / "f.parquet")[0]
+    assert "time is the same as in the row before" in faults(tmp_path / "f.parquet")[0]
     recording = read_recording(tmp_path / "b.parquet")
     assert recording.heading.values[:, 0] == pytest.approx([1.0 * DEG])
     assert recording.warnings == ("b.parquet: empty cells, missing samples: heading_deg 1",)
