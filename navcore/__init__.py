@@ -30,8 +30,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from navcore.design.budget import Budget, budget
-    from navcore.design.designs import Designs, designs
-    from navcore.design.pareto import Pareto, pareto
+    from navcore.design.designs import designs
+    from navcore.design.fronts import Pareto
+    from navcore.design.judged import Designs
+    from navcore.design.pareto import pareto
     from navcore.design.tune import tune
     from navcore.design.tuned import Tuned
     from navcore.engine.measures import metrics
@@ -71,11 +73,9 @@ __all__ = [
 
 _HOME = {
     "Budget": "design.budget",
-    "Pareto": "design.pareto",
+    "Pareto": "design.fronts",
     "Tuned": "design.tuned",
-    "Designs": "design.designs",
-    "designs": "design.designs",
-    "pareto": "design.pareto",
+    "Designs": "design.judged",
     "Fault": "foundation.errors",
     "InputError": "foundation.errors",
     "MethodRun": "engine.run",

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from tyro.conf import Positional, UseAppendAction, arg
 
 from navcore.foundation.answers import Answer
+from navcore.foundation.errors import Fault, InputError
 from navcore.questions.base import Option, Question
 from schuler_bench.cli.terminal import emit_result, say
 
@@ -46,7 +47,7 @@ class AskingCommand:
             return question.answer(progress, stopped)
 
     def _source(self, given: Mapping[str, Any]) -> str:
-        return str(given[self.asked.subject])
+        return str(given[self.asked.subject] or self.asked.model_fields["id"].default)
 
     def _fields(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Values of the question's fields: those that are not given keep their defaults."""
@@ -54,6 +55,11 @@ class AskingCommand:
 
         fields = {one.name: given[one.name] for one in self.asked.options() if given[one.name] is not None}
         subject = given[self.asked.subject]
+        if not subject and given["set"]:
+            allowed = "needs a SCENARIO whose field it overrides"
+            raise InputError(Fault("", "--set", given["set"][0], allowed))
+        if not subject:
+            return fields
         return fields | {self.asked.subject: load(subject, given["set"]) if "set" in given else subject}
 
 
@@ -61,9 +67,9 @@ def command_of(question: type[Question]) -> type[AskingCommand]:
     """Make the command of a question: a dataclass from which tyro reads a command line."""
     subject = question.model_fields[question.subject]
     metavar = question.subject.upper()
-    rows: list[tuple[str, Any, Any]] = [
-        (question.subject, Annotated[Positional[str], arg(metavar=metavar, help=subject.description)], ...)
-    ]
+    positional = Annotated[Positional[str], arg(metavar=metavar, help=subject.description)]
+    first = ... if subject.is_required() else subject.default
+    rows: list[tuple[str, Any, Any]] = [(question.subject, positional, first)]
     rows += [(one.name, _annotation(one), _default(one)) for one in question.options()]
     if question.subject == "scenario":
         rows.append(("set", UseAppendAction[_with(tuple[str, ...], "KEY=VALUE", _SET)], ()))

@@ -10,13 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.questions import QUESTIONS
-from schuler_bench.cli.adapt import AdaptCommand
 from schuler_bench.cli.asking import command_of
 from schuler_bench.cli.bench import BenchCommand
 from schuler_bench.cli.check import CheckCommand
-from schuler_bench.cli.design import DesignCommand
 from schuler_bench.cli.network import NetworkCommand
-from schuler_bench.cli.pareto import ParetoCommand
 from schuler_bench.cli.presets import PresetsCommand
 from schuler_bench.cli.run import RunCommand
 from schuler_bench.cli.serve import ServeCommand
@@ -35,9 +32,6 @@ _COMMANDS = {
     "presets": PresetsCommand,
     "check": CheckCommand,
     **{id: command_of(question) for id, question in QUESTIONS.items()},
-    "pareto": ParetoCommand,
-    "adapt": AdaptCommand,
-    "design": DesignCommand,
     "study": StudyCommand,
     "bench": BenchCommand,
 }

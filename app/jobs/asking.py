@@ -23,8 +23,8 @@ class Asker(Search[Any, Any]):
         Whose answers these are.
     name : str
         Of the visitor, for the turns.
-    still_s : float, optional
-        As of `Search`; by default that of the question.
+    still_s, keeps : optional
+        As of `Search`; by default those of the question.
 
     Attributes
     ----------
@@ -39,16 +39,18 @@ class Asker(Search[Any, Any]):
         name: str = "asker",
         *,
         still_s: float | None = None,
+        keeps: bool | None = None,
     ) -> None:
+        keeps = question.keeps if keeps is None else keeps
         super().__init__(
             tell,
             answered,
-            lambda found: question.keeps or found.complete,
+            lambda found: keeps or found.complete,
             stopped=question.stopped,
             name=name,
             load=lambda asked: (spare_load if question.spare else heavy_load)(asked.load),
             still_s=question.still_s if still_s is None else still_s,
-            keeps=question.keeps,
+            keeps=keeps,
         )
         self.question = question
         self.accepted: Scenario | None = None

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from navcore.engine.run import Run
 from navcore.questions import QUESTIONS
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.jobs.designer import Fronts, Limits, Tuner
-from schuler_bench.jobs.judge import Judge
+from schuler_bench.jobs.odds import Judge
 from schuler_bench.jobs.studier import Studier
 from schuler_bench.jobs.sweeper import Sweeper
 from schuler_bench.jobs.why import Explainer
@@ -28,14 +27,8 @@ class Searches:
     ----------
     explainer : Explainer
         What dominates the run.
-    tuner : Tuner
-        Sun's double loop.
     asking : dict of Asker
         By the name of the question that it asks.
-    fronts : Fronts
-        Pareto fronts of all networks.
-    limits : Limits
-        Every network tuned for the limits.
     judge : Judge
         Shares of seeds that meet the limits.
     sweeper : Sweeper
@@ -48,19 +41,13 @@ class Searches:
         self._lock = threading.Lock()
         self._watchers: list[Callable[[], None]] = []
         self.explainer = Explainer(self._tell, name)
-        self.tuner = Tuner(self._tell, name)
         self.asking = {id: Asker(self._tell, question, name) for id, question in QUESTIONS.items()}
-        self.fronts = Fronts(self._tell, name)
-        self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
         self.sweeper = Sweeper(self._tell, name)
         self.studier = Studier(self._tell, name)
         self._all = (
             self.explainer,
-            self.tuner,
             *self.asking.values(),
-            self.fronts,
-            self.limits,
             self.judge,
             self.sweeper,
             self.studier,

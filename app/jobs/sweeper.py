@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.judge import without_methods
+from schuler_bench.jobs.odds import without_methods
 from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:

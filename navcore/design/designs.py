@@ -1,12 +1,12 @@
 """From limits to designs: which methods meet the requirements, on which share of seeds (theory.md 18)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
+from navcore.design.judged import Designs
 from navcore.design.measures import TUNING_INTERVALS
-from navcore.design.needed import Needed, needed
-from navcore.design.shares import Share, require_limits, shares_of
+from navcore.design.needed import needed
+from navcore.design.shares import require_limits, shares_of
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import kalman, tuned_methods
@@ -23,50 +23,6 @@ _FEW, _AFTER_STOP_S = 4, 2.0
 """Seeds that judge what was tuned before a stop, and about how long these may take, s."""
 _TUNING_SHARE = 0.5
 """Of the time that a design takes."""
-
-
-@dataclass(frozen=True)
-class Designs:
-    """Methods by the share of seeds on which they meet all requirements.
-
-    Attributes
-    ----------
-    seeds : int
-        Runs of each method.
-    methods : tuple of Share
-        Best first.
-    assumed_zero : tuple of str
-        Standard deviations that the scenario states neither by themselves nor by a number: 0 is assumed.
-    left_out : tuple of (str, str)
-        Networks for which there is no method, and why.
-    needed : tuple of Needed
-        Where no method meets all limits on half of the seeds: figures that would have to be better.
-    stopped : bool
-        It was cancelled: fewer seeds, or methods that were not tuned to the end.
-    """
-
-    seeds: int
-    methods: tuple[Share, ...]
-    assumed_zero: tuple[str, ...]
-    left_out: tuple[tuple[str, str], ...] = ()
-    needed: tuple[Needed, ...] = ()
-    stopped: bool = False
-
-    @property
-    def met(self) -> bool:
-        """Whether a method meets all limits on half of the seeds."""
-        return self.methods[0].met >= 0.5
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the document of interface.md."""
-        return {
-            "seeds": self.seeds,
-            "methods": [share.as_dict() for share in self.methods],
-            "assumed_zero": list(self.assumed_zero),
-            "left_out": dict(self.left_out),
-            "needed": [one.as_dict() for one in self.needed],
-            "stopped": self.stopped,
-        }
 
 
 def designs(

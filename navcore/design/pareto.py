@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from navcore.design.fronts import Pareto, Point
 from navcore.design.measures import (
     TUNING_INTERVALS,
     Setting,
@@ -45,72 +46,6 @@ _ALSO = 1e-3
 """Weight of the objective that does not matter."""
 Seen = tuple[tuple[float, float], dict[str, Any]]
 """Objectives and network block of a setting."""
-
-
-@dataclass(frozen=True)
-class Point:
-    """One setting of a network that no other of that network beats in both objectives.
-
-    Attributes
-    ----------
-    values : (float, float)
-        Objectives, SI.
-    network : dict
-        The network block that gives them.
-    growth_per_s : float
-        Fastest growth of the whole system with it as the law is sampled, 1/s.
-    earth_growth : float
-        Growth of the 24 h mode of the whole system with it, 1/s (theory.md 10); negative when it decays.
-    """
-
-    values: tuple[float, float]
-    network: dict[str, Any]
-    earth_growth: float = 0.0
-    growth_per_s: float = 0.0
-
-
-@dataclass(frozen=True)
-class Pareto:
-    """Fronts of all networks.
-
-    Attributes
-    ----------
-    objectives : (str, str)
-        What is on the axes.
-    fronts : dict of tuple of Point
-        By network id, in order of the first objective.
-    present : (float, float) or None
-        Of the method as it is; None where it has no finite values.
-    floor : tuple of float or None
-        Of each objective.
-    stopped : bool
-        The search was cancelled.
-    """
-
-    objectives: tuple[str, str]
-    fronts: dict[str, tuple[Point, ...]]
-    present: tuple[float, float] | None
-    floor: tuple[float | None, float | None]
-    stopped: bool
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return a document that JSON can hold."""
-        return {
-            "objectives": list(self.objectives),
-            "floor": list(self.floor),
-            "present": None if self.present is None else list(self.present),
-            "fronts": [
-                {
-                    "network": name,
-                    "points": [
-                        {"values": list(p.values), "network": p.network, "growth_per_s": p.growth_per_s}
-                        for p in points
-                    ],
-                }
-                for name, points in self.fronts.items()
-            ],
-            "stopped": self.stopped,
-        }
 
 
 class _Weighed(Search):

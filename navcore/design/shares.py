@@ -78,6 +78,16 @@ class Share:
     diverged: int
 
     @property
+    def setting(self) -> str:
+        """Parameters in words, and on how many seeds it diverges."""
+        fields = {} if self.method.undamped else self.method.network.model_dump(exclude_none=True)
+        numbers = [f"{name} = {value:.4g}" for name, value in fields.items() if isinstance(value, float)]
+        words = ", ".join(numbers) or Text("no parameter")
+        if not self.diverged:
+            return words
+        return Text("{words}, diverges on {seeds} seeds", words=words, seeds=self.diverged)
+
+    @property
     def order(self) -> tuple[float, float]:
         """Key by which methods are ordered, best first."""
         return -self.met, max(limit.ratio for limit in self.limits)

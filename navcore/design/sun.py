@@ -24,7 +24,9 @@ import numpy as np
 
 from navcore.design.sun_settings import TuningSettings
 from navcore.engine.simulation import Cancelled, Progress, simulate
+from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR, KNOT
 from navcore.law.policy.adaptive import HIGHEST, LOWEST, SUN_TABLE
 from navcore.quantities import VELOCITY, components
@@ -38,7 +40,7 @@ from navcore.sensors.reference import Reference
 
 
 @dataclass(frozen=True, eq=False)
-class Tuning:
+class Tuning(Answer):
     """Result of the double loop.
 
     Attributes
@@ -67,15 +69,37 @@ class Tuning:
     status: Literal["ok", "stopped"]
     warnings: tuple[str, ...] = field(default=())
 
+    @property
+    def complete(self) -> bool:
+        """Whether it was not stopped."""
+        return self.status == "ok"
+
+    def document(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        names = "difference_kn", "xi", "sun_xi"
+        rows = [dict(zip(names, row, strict=True)) for row in self.beside_sun()]
+        return {"network": self.settings.network.id, "rows": rows, "warnings": list(self.warnings)}
+
+    def rows(self) -> Iterator[Table | str]:
+        """Give the table beside Sun's, and the warnings."""
+        best = Text("best coefficient, {network}", network=self.settings.network.id)
+        heads = (Column(Text("difference, kn")), Column(best), Column(Text("Sun's table 1")))
+        rows = tuple((number(first), *others) for first, *others in self.beside_sun())
+        yield Table(heads, rows)
+        if self.warnings:
+            yield ""
+        for text in self.warnings:
+            yield Text("warning: {text}", text=text)
+
     def beside_sun(self) -> list[tuple[float, float, float]]:
         """Difference (kn), best coefficient and that of Sun's Table 1 (interpolated between his rows)."""
         knots, xi = np.array(SUN_TABLE).T
         from scipy.interpolate import PchipInterpolator
 
-        his = PchipInterpolator(knots, xi)(np.clip([row[0] for row in self.rows()], knots[0], knots[-1]))
-        return [(row[0], row[1], float(value)) for row, value in zip(self.rows(), his, strict=True)]
+        his = PchipInterpolator(knots, xi)(np.clip([row[0] for row in self.pairs()], knots[0], knots[-1]))
+        return [(row[0], row[1], float(value)) for row, value in zip(self.pairs(), his, strict=True)]
 
-    def rows(self) -> list[list[float]]:
+    def pairs(self) -> list[list[float]]:
         """The table as [difference (kn), damping coefficient], ascending; empty when stopped."""
         if self.status != "ok":
             return []
@@ -131,7 +155,7 @@ def tune_table(
     --------
     >>> from navcore.design.sun import TuningSettings, tune_table
     >>> found = tune_table(settings=TuningSettings(differences_kn=(0.0, 3.0), step=0.33))
-    >>> found.status, len(found.rows())
+    >>> found.status, len(found.pairs())
     ('ok', 2)
     """
     scenario, settings = scenario or sun_scenario(), settings or TuningSettings()
@@ -246,7 +270,7 @@ def with_table(scenario: Scenario, tuning: Tuning, method: int | None = None) ->
     InputError
         The search was stopped, there is no such method, or the policy cannot re-tune the network.
     """
-    table = tuning.rows()
+    table = tuning.pairs()
     if not table:
         raise InputError(Fault("", "table", None, "the search was stopped: there is no table"))
     data = scenario.canonical()

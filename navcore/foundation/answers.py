@@ -4,7 +4,7 @@ The text on a terminal, the HTML of a notebook and the tables of the page are ma
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,11 +26,14 @@ class Column:
         Of its numbers; empty for none.
     digits : int
         Significant digits of its numbers.
+    left : bool
+        Words that begin at the left; numbers end at the right, and so does a word among them.
     """
 
     name: str = ""
     unit: str = ""
     digits: int = 4
+    left: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,8 @@ class Table:
     def lines(self) -> list[str]:
         """Lines for a terminal: headings, units where a column has one, then the rows."""
         title = [self.title] if self.title else []
-        return [*title, *columns([*self._heads(), *self._cells()])]
+        left = {place for place, column in enumerate(self.columns) if column.left}
+        return [*title, *columns([*self._heads(), *self._cells()], left=left)]
 
     def html(self) -> Text:
         """HTML of the table; its classes are those of the page's tables."""
@@ -151,8 +155,8 @@ def _row(cells: Sequence[str], tag: str) -> Text:
     return Text("<tr>{cells}</tr>", cells=Text.joined("", made))
 
 
-def columns(rows: Sequence[Sequence[str]], gap: str = "  ") -> list[str]:
-    """Lay rows of equal length out in columns: the first left, the others right-aligned.
+def columns(rows: Sequence[Sequence[str]], gap: str = "  ", left: Collection[int] = ()) -> list[str]:
+    """Lay rows of equal length out in columns: the first and those that are named left, the others right.
 
     Examples
     --------
@@ -161,9 +165,11 @@ def columns(rows: Sequence[Sequence[str]], gap: str = "  ") -> list[str]:
     """
     widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
     lines = []
-    for first, *others in rows:
-        cells = [first.ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(others, widths[1:], strict=True)]
+    for row in rows:
+        cells = [
+            cell.ljust(width) if place == 0 or place in left else cell.rjust(width)
+            for place, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
         lines.append(gap.join(cells).rstrip())
     return lines
 

@@ -13,5 +13,8 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.budget:BudgetQuestion",
     "navcore.questions.tune:TuneQuestion",
     "navcore.questions.profile:ProfileQuestion",
+    "navcore.questions.pareto:ParetoQuestion",
+    "navcore.questions.adapt:AdaptQuestion",
+    "navcore.questions.design:DesignQuestion",
 )
 """Questions by name, in the order in which the command and the page offer them."""

@@ -31,7 +31,7 @@ Kind = Literal["flag", "whole", "number", "choice", "text"]
 Writes = Literal["", "file", "folder"]
 
 
-def _loaded(value: Any) -> Any:
+def loaded(value: Any) -> Any:
     """Scenario of a name or file; imported only now, so that a command line is read at once."""
     from navcore.scenario.file import load
     from navcore.scenario.model import Scenario
@@ -46,7 +46,7 @@ def _loaded(value: Any) -> Any:
 if TYPE_CHECKING:
     Asked = Scenario
 else:
-    Asked = Annotated[Any, BeforeValidator(_loaded)]
+    Asked = Annotated[Any, BeforeValidator(loaded)]
     """Type of a field that holds a scenario: itself, the name of a preset, or a file."""
 
 
@@ -242,6 +242,7 @@ def _option(name: str, info: FieldInfo) -> Option:
     annotation, many = _plain(info.annotation), False
     if get_origin(annotation) is tuple:
         annotation, many = _plain(get_args(annotation)[0]), True
+    many = many or bool(extra_of(info).get("many"))
     choices = tuple(map(str, get_args(annotation))) if get_origin(annotation) is Literal else ()
     kinds: dict[Any, Kind] = {bool: "flag", int: "whole", float: "number"}
     kind: Kind = "choice" if choices else kinds.get(annotation, "text")

@@ -54,7 +54,9 @@ def name_of(question: type[Question]) -> str:
 def _signature(question: type[Question]) -> inspect.Signature:
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
     options = sorted(question.options(), key=lambda one: one.default is not ...)
-    parameters = [inspect.Parameter(question.subject, positional)]
+    subject = question.model_fields[question.subject]
+    first = inspect.Parameter.empty if subject.is_required() else subject.default
+    parameters = [inspect.Parameter(question.subject, positional, default=first)]
     parameters += [inspect.Parameter(one.name, positional, default=_default(one)) for one in options]
     parameters += [inspect.Parameter(name, keyword, default=None) for name in _WAITED]
     return inspect.Signature(parameters)

@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from navcore.design.judged import left_out_lines
 from navcore.design.measures import TUNING_INTERVALS
 from navcore.design.shares import Share, require_limits, shares_of, wilson
 from navcore.design.ship import Ship
+from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import INTERVALS, Spread, default_method, kalman, ratio_at, tuned_methods
 from navcore.engine.ensemble import outcomes
+from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
@@ -79,7 +82,7 @@ class RobustShare:
 
 
 @dataclass(frozen=True)
-class Robust:
+class Robust(Answer):
     """Methods by the share of seeds on which they meet all limits over a study's points.
 
     Attributes
@@ -92,6 +95,8 @@ class Robust:
         Best first.
     left_out : tuple of (str, str)
         Networks for which there is no method, and why.
+    assumed_zero : tuple of str
+        Standard deviations that the scenario states in no way: 0 is assumed.
     """
 
     points: int
@@ -99,13 +104,49 @@ class Robust:
     quantile: float
     methods: tuple[RobustShare, ...]
     left_out: tuple[tuple[str, str], ...] = ()
+    assumed_zero: tuple[str, ...] = ()
 
     @property
     def price(self) -> float:
         """Share of seeds, in the scenario itself, that the most robust method gives up to the best one."""
         return max(one.nominal.met for one in self.methods) - self.methods[0].nominal.met
 
-    def as_dict(self) -> dict[str, Any]:
+    def rows(self) -> Iterator[Table | str]:
+        """Give a row a method: its share in the scenario, over all points, and where it is worst."""
+        yield Text(
+            "{points} points, {seeds} seeds each with its own noise and constants",
+            points=self.points,
+            seeds=self.seeds,
+        )
+        which = (
+            Text("worst point %")
+            if self.quantile == 0.0
+            else Text("{quantile:g} % point %", quantile=100.0 * self.quantile)
+        )
+        heads = Text("method"), Text("as it stands %"), Text("all points %"), which
+        rows = []
+        for one in self.methods:
+            missed = min(one.worst.limits, key=lambda limit: limit.met)
+            words = f"{missed.requirement.quantity} {number(missed.median)}" if missed.met < 1.0 else "-"
+            shares = (one.nominal.met, one.met, one.counted)
+            rows.append((one.method.label(), *(number(100.0 * share, 3) for share in shares), words))
+        yield Table(tuple(map(Column, (*heads, Text("missed most often there")))), tuple(rows))
+        best = self.methods[0]
+        shown = {name: f"{v:.4g}" if isinstance(v, float) else v for name, v in best.where.items()}
+        where = ", ".join(f"{name} = {value}" for name, value in shown.items())
+        yield ""
+        yield Text("{name} is worst with {where}", name=best.method.label(), where=where)
+        if self.price > 0.0:
+            price = number(100.0 * self.price, 3)
+            yield Text(
+                "price of robustness: {price} % of the seeds of the scenario as it stands", price=price
+            )
+        yield ""
+        for one in self.methods:
+            yield Text("{name}: {setting}", name=one.method.label(), setting=one.nominal.setting)
+        yield from left_out_lines(self.left_out)
+
+    def document(self) -> dict[str, Any]:
         """Return the document of interface.md."""
         return {
             "points": self.points,
@@ -114,6 +155,7 @@ class Robust:
             "methods": [one.as_dict() for one in self.methods],
             "price": self.price,
             "left_out": dict(self.left_out),
+            "assumed_zero": list(self.assumed_zero),
         }
 
 
@@ -176,7 +218,7 @@ def robust_designs(
         for k in range(len(methods))
     )
     ordered = tuple(sorted(shares, key=lambda one: one.order))
-    return Robust(len(points), seeds, quantile, ordered, left_out)
+    return Robust(len(points), seeds, quantile, ordered, left_out, assumed_zero(scenario))
 
 
 def points_of(

@@ -17,7 +17,7 @@ def found(**fields: object) -> Tuning:
 def test_suns_network_has_no_optimum_near_one_without_a_difference(variant, best):
     # his table has 0.99 at no difference; with gyro drifts alone the least J lies far below
     result = found(network={"id": "pole2", "variant": variant})
-    assert result.rows()[0][1] == pytest.approx(best, abs=STEP + 1e-9)
+    assert result.pairs()[0][1] == pytest.approx(best, abs=STEP + 1e-9)
 
 
 def test_unity2_rejects_a_constant_difference():

@@ -6,9 +6,10 @@ import pytest
 
 from navcore.design.designs import designs
 from navcore.design.vary import tunable_fields
+from navcore.questions.design import DesignQuestion
+from navcore.questions.pareto import ParetoQuestion
 from navcore.scenario.file import load
 from navcore.study.robust_tune import TunedOver
-from schuler_bench.jobs.designer import FrontsTask, LimitsTask
 from schuler_bench.shell.places import OVER, PLACES
 from schuler_bench.views.design.view import BUDGET_OF, CHOICES
 from schuler_bench.views.design.view import FIND as FIND_DESIGNS
@@ -92,9 +93,9 @@ def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
     require(moving, tilt_max_arcsec=12.0)
     page.locator("[data-design=complementary]").wait_for()
     moving.button(FIND_DESIGNS).wait_for()
-    before, limits = session.scenario, session.searches.limits
+    before, limits = session.scenario, session.searches.asking["design"]
     # all networks take too long for a test
-    limits.result, limits.asked = designs(before, 2, as_set=True), LimitsTask(before)
+    limits.result, limits.asked = designs(before, 2, as_set=True), DesignQuestion(scenario=before)
     limits._tell()
     take = page.locator("[data-design=classic2] .sb-take")
     take.wait_for()
@@ -106,7 +107,7 @@ def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
 
 
 def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -> None:
-    session, limits = short.session, short.session.searches.limits
+    session, limits = short.session, short.session.searches.asking["design"]
     short.tab("Design")
     require(short, tilt_max_arcsec=12.0)
     short.choose(OVER, PLACES["study"])
@@ -119,7 +120,7 @@ def test_designs_are_looked_for_over_the_points_of_the_tab_study(short: Bench) -
     short.button(STOP_DESIGNS).wait_for()
     task = limits.under_way
     assert task is not None and task.scenario == session.scenario
-    assert task.study is not None and [one.fields for one in task.study.factor] == [("site.lat_deg",)]
+    assert task.over is not None and [one.fields for one in task.over.factor] == [("site.lat_deg",)]
     limits.cancel()
     short.button(FIND_DESIGNS).wait_for()
 
@@ -154,12 +155,12 @@ def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(designing: Bench) 
     ended = re.compile("Stopped: no fronts were found|The search was stopped: these are the fronts")
     page.get_by_text(ended).first.wait_for(timeout=60_000)
     # what the stopped search has found must not be clicked for what the next one finds
-    session.searches.fronts.forget()
-    session.searches.fronts._tell()
+    session.searches.asking["pareto"].forget()
+    session.searches.asking["pareto"]._tell()
     page.wait_for_function("() => look.frontSpot('classic3') === null")
     # all networks take too long for a test
-    task = FrontsTask(session.scenario, 2, ("tilt_rms", "velocity_rms"), ("classic2", "classic3"))
-    session.searches.fronts.begin(task)
+    task = ParetoQuestion(scenario=session.scenario, method=2, network=("classic2", "classic3"))
+    session.searches.asking["pareto"].begin(task)
     page.wait_for_function("look.frontRests", arg="classic3", timeout=60_000)
     before = session.scenario
     page.mouse.click(*page.evaluate("look.frontSpot", "classic3"))

@@ -139,13 +139,13 @@ def test_a_table_is_found_and_taken_over_as_one_step(adaptive: Bench) -> None:
     step.fill("0.2")
     adaptive.button(FIND).click()
     page.locator(".sb-tuned svg").wait_for(timeout=120_000)
-    found = session.searches.tuner.result
+    found = session.searches.asking["adapt"].result
     assert found.settings.step == 0.2
-    assert page.locator(".sb-tuned .sb-found").count() == len(found.rows())
+    assert page.locator(".sb-tuned .sb-found").count() == len(found.pairs())
     assert adaptive.run == number and table(adaptive) == before  # nothing is changed unasked
     with adaptive.next_run():
         adaptive.button(USE).click()
-    assert table(adaptive) == found.rows()
+    assert table(adaptive) == found.pairs()
     with adaptive.next_run():
         session.undo()
     assert table(adaptive) == before
@@ -160,7 +160,7 @@ def test_a_table_is_found_and_taken_over_as_one_step(adaptive: Bench) -> None:
 
 
 def test_a_search_is_stopped(adaptive: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    tuner, endless = adaptive.session.searches.tuner, Endless()
+    tuner, endless = adaptive.session.searches.asking["adapt"], Endless()
     monkeypatch.setattr(tuner, "_compute", endless)
     adaptive.button(FIND).click()
     assert endless.begun.wait(60.0)

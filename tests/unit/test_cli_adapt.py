@@ -29,8 +29,8 @@ def test_the_command_gives_the_table_of_the_double_loop(capsys: pytest.CaptureFi
         }
     )
     found = tune_table(load("zha-fast", ["run.step_s=10"]), settings)
-    assert [[row["difference_kn"], row["xi"]] for row in given["rows"]] == found.rows()
-    assert len(set(np.array(found.rows())[:, 1])) > 1
+    assert [[row["difference_kn"], row["xi"]] for row in given["rows"]] == found.pairs()
+    assert len(set(np.array(found.pairs())[:, 1])) > 1
 
 
 def test_the_table_goes_into_a_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,17 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.design.pareto import Pareto, measured, pareto
+from navcore.design.fronts import Pareto
+from navcore.design.pareto import measured, pareto
 from navcore.design.vary import read_varied
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.networks.optimal import OptimalNetwork
+from navcore.questions.pareto import ParetoQuestion
 from navcore.scenario.file import load, to_toml
 from navcore.scenario.model import Scenario
 from schuler_bench.cli import main
 from schuler_bench.editing.edits import with_network
-from schuler_bench.jobs.designer import FrontsTask
 from schuler_bench.plots.plotly_data import values_of
 from schuler_bench.views.frequency.curves import optimal_reference
 from schuler_bench.views.frequency.figure import bode
@@ -126,7 +127,7 @@ def test_a_click_means_the_nearest_point_and_nothing_far_from_all(found: Pareto)
 
 
 def test_a_point_changes_one_network_and_the_fronts_still_fit(ship: Scenario, found: Pareto) -> None:
-    task = FrontsTask(ship, 2, OBJECTIVES)
+    task = ParetoQuestion(scenario=ship, x=OBJECTIVES[0], y=OBJECTIVES[1], method=2)
     (point,) = found.fronts["classic3"]
     changed = with_network(ship, 2, point.network)
     assert changed.method[2].name == "classic3"  # "complementary" before: a name made from the network

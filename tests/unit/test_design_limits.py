@@ -5,9 +5,11 @@ from typing import Any
 
 import pytest
 
-from navcore.design.designs import Designs, designs
+from navcore.design.designs import designs
+from navcore.design.judged import Designs
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
+from navcore.questions.design import DesignQuestion
 from navcore.scenario.file import load
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -15,12 +17,13 @@ from navcore.study.crossed import crossed
 from navcore.study.robust import robust_designs
 from schuler_bench.editing.edits import with_design, with_value
 from schuler_bench.editing.limits import with_limit
-from schuler_bench.jobs import judge
-from schuler_bench.jobs.designer import Limits, LimitsTask
-from schuler_bench.jobs.judge import Judge, Odds
+from schuler_bench.jobs import odds
+from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.odds import Judge, Odds
 from schuler_bench.plots.units import number
 from schuler_bench.session.requirements import asked
 from schuler_bench.views.design.limits import designs_html
+from schuler_bench.views.design.view import designs_beside
 from schuler_bench.views.requirements.table import requirements_html
 
 
@@ -33,8 +36,8 @@ def ship() -> Scenario:
 
 @pytest.fixture
 def judging(monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.setattr(judge, "FEW", 4)
-    monkeypatch.setattr(judge, "SEEDS", 12)
+    monkeypatch.setattr(odds, "FEW", 4)
+    monkeypatch.setattr(odds, "SEEDS", 12)
     told: list[int] = []
     one = Judge(lambda: told.append(1), still_s=0.0)
     yield one
@@ -48,7 +51,7 @@ def shares(found: Designs) -> list[tuple[str, float]]:
 def test_shares_are_those_of_the_command_and_a_method_that_stays_is_not_run_again(
     judging: Judge, ship: Scenario
 ) -> None:
-    judging.follow(ship)
+    judging.judge(ship)
     assert judging.wait_idle(120.0)
     odds = [judging.odds(ship, method) for method in ship.method]
     wanted = designs(ship, 12, as_set=True)
@@ -56,7 +59,7 @@ def test_shares_are_those_of_the_command_and_a_method_that_stays_is_not_run_agai
     assert found == shares(wanted) and {one.seeds for one in odds if one is not None} == {12}
     changed = with_value(ship, ("method", 2, "network", "zeta"), 0.6)
     assert judging.odds(changed, changed.method[2]) is None
-    judging.follow(changed)
+    judging.judge(changed)
     assert judging.wait_idle(120.0)
     assert judging.asked is not None and [m.name for m in judging.asked.scenario.method] == ["complementary"]
     assert judging.odds(changed, changed.method[1]) is odds[1]
@@ -85,7 +88,7 @@ def test_what_one_seed_meets_and_another_misses_has_its_share_beside_the_tick(ju
     shown = {}
     for seed in (1, 2):
         scenario = runs[seed].scenario
-        judging.follow(scenario)
+        judging.judge(scenario)
         assert judging.wait_idle(120.0)
         odds = judging.odds(scenario, scenario.method[0])
         assert odds is not None and odds.seeds == 12
@@ -103,10 +106,10 @@ def test_what_one_seed_meets_and_another_misses_has_its_share_beside_the_tick(ju
 def test_without_a_limit_nothing_is_judged_and_a_wrong_one_is_refused_in_words(
     judging: Judge, ship: Scenario
 ) -> None:
-    judging.follow(ship.model_copy(update={"requirement": ()}))
+    judging.judge(ship.model_copy(update={"requirement": ()}))
     assert judging.wait_idle(10.0) and judging.asked is None and judging.under_way is None
     late = ship.requirement[0].model_copy(update={"from_h": 5.0})
-    judging.follow(ship.model_copy(update={"requirement": (late,)}))
+    judging.judge(ship.model_copy(update={"requirement": (late,)}))
     assert judging.wait_idle(60.0)
     assert "requirement.0.from_h = 5.0: must be <= 2 (h), the end of the run" in judging.words
 
@@ -160,11 +163,11 @@ def test_a_design_takes_the_place_of_the_edited_method_or_stands_behind_a_free_o
 
 
 def test_designs_are_of_one_ship_and_its_limits(ship: Scenario) -> None:
-    limits = Limits(lambda: None)
+    limits = Asker(lambda: None, DesignQuestion)
     try:
-        limits.result, limits.asked = Designs(1, (), ()), LimitsTask(ship)
+        limits.result, limits.asked = Designs(1, (), ()), DesignQuestion(scenario=ship)
         changed = with_value(ship, ("method", 2, "network", "zeta"), 0.6)
-        assert limits.beside(changed) is limits.result
-        assert limits.beside(with_limit(ship, "tilt_max_arcsec", "1")) is None
+        assert designs_beside(limits, changed) is limits.result
+        assert designs_beside(limits, with_limit(ship, "tilt_max_arcsec", "1")) is None
     finally:
         limits.stop()

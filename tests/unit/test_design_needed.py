@@ -5,7 +5,8 @@ from typing import Any
 
 import pytest
 
-from navcore.design.designs import Designs, designs
+from navcore.design.designs import designs
+from navcore.design.judged import Designs
 from navcore.design.needed import Needed
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario

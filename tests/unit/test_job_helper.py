@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.design.sun import TuningSettings
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions.adapt import AdaptQuestion
 from navcore.questions.budget import BudgetQuestion
+from navcore.questions.pareto import ParetoQuestion
 from navcore.questions.tune import TuneQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs import helper
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.jobs.designer import Fronts, FrontsTask, TableTask, Tuner
 from schuler_bench.jobs.envelopes import Envelopes
 from schuler_bench.jobs.long_runs import run_for
 from schuler_bench.jobs.scheduler import Lane, Scheduler
@@ -165,8 +165,12 @@ def begun(name: str) -> Search[Any, Any]:
     """One of the searches, begun."""
     search: Search[Any, Any]
     if name == "fronts":
-        search = Fronts(lambda: None)
-        search.begin(FrontsTask(SCENARIO, 2, ("velocity_rms", "settling_s"), ("compass",)))
+        search = Asker(lambda: None, ParetoQuestion)
+        search.begin(
+            ParetoQuestion(
+                scenario=SCENARIO, x="velocity_rms", y="settling_s", method=2, network=("compass",)
+            )
+        )
     elif name == "setting":
         search = Asker(lambda: None, TuneQuestion)
         search.begin(TuneQuestion(scenario=SCENARIO, objective="tilt_rms", vary=("method.2.network.zeta",)))
@@ -180,9 +184,9 @@ def begun(name: str) -> Search[Any, Any]:
         search = Explainer(lambda: None, still_s=0.0)
         search.follow(simulate(SCENARIO))
     elif name == "table":
-        search = Tuner(lambda: None)
+        search = Asker(lambda: None, AdaptQuestion)
         search.begin(
-            TableTask(Scenario.parse({"reference": {"kind": "log"}, "method": [ADAPTIVE]}), TuningSettings())
+            AdaptQuestion(scenario=Scenario.parse({"reference": {"kind": "log"}, "method": [ADAPTIVE]}))
         )
     else:
         search = Envelopes(simulate, lambda: None, lambda: None, still_s=0.0)

@@ -7,20 +7,14 @@ from typing import Any
 
 import pytest
 
-from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions.adapt import AdaptQuestion
+from navcore.questions.design import DesignQuestion
+from navcore.questions.pareto import ParetoQuestion
 from navcore.questions.tune import TuneQuestion
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.jobs.designer import (
-    Fronts,
-    FrontsTask,
-    Limits,
-    LimitsTask,
-    TableTask,
-    Tuner,
-)
 from schuler_bench.jobs.scheduler import Lane, Load
 from schuler_bench.jobs.searches import Searches
 from schuler_bench.jobs.verifier import CHANGED, STOPPED, Verifier
@@ -154,7 +148,7 @@ def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None
 # ------------------------------------------------------------ the table
 
 
-def tuned(task: TableTask, progress: Any, cancelled: Any) -> Any:
+def tuned(task: Any, progress: Any, cancelled: Any) -> Any:
     scenario = task.scenario
     if scenario == "refused":
         raise InputError(Fault("", "imu.file", "a.csv", "must be empty"))
@@ -163,17 +157,17 @@ def tuned(task: TableTask, progress: Any, cancelled: Any) -> Any:
     while scenario == "endless" and not cancelled():
         progress(0.5)
         threading.Event().wait(0.002)
-    return SimpleNamespace(status="stopped" if cancelled() else "ok", of=scenario)
+    return SimpleNamespace(complete=not cancelled(), of=scenario)
 
 
 def test_a_table_is_found_stopped_refused_and_kept() -> None:
     told: list[float | None] = []
-    tuner = Tuner(lambda: told.append(tuner.fraction))
+    tuner = Asker(lambda: told.append(tuner.fraction), AdaptQuestion)
     tuner._compute = tuned
     tuner._worker._load = lambda _: Load(Lane.SPARE)
 
     def begin(scenario: Any) -> None:
-        tuner.begin(TableTask(scenario, TuningSettings()))
+        tuner.begin(AdaptQuestion.model_construct(scenario=scenario))
 
     begin("one")
     assert tuner.wait_idle(5.0)
@@ -216,8 +210,12 @@ SHIP = Scenario.parse(
             TuneQuestion(scenario=SHIP, objective="tilt_rms", vary=("method.0.network.xi",)),
             lambda one: one.best,
         ),
-        (Fronts, FrontsTask(SHIP, 0, ("tilt_rms", "velocity_rms")), lambda one: one.fronts["compass"]),
-        (Limits, LimitsTask(SHIP), lambda one: one.methods),
+        (
+            lambda tell: Asker(tell, ParetoQuestion),
+            ParetoQuestion(scenario=SHIP),
+            lambda one: one.fronts["compass"],
+        ),
+        (lambda tell: Asker(tell, DesignQuestion), DesignQuestion(scenario=SHIP), lambda one: one.methods),
     ],
 )
 def test_what_a_halted_search_has_found_is_kept_and_marked(kind: Any, task: Any, found: Any) -> None:
@@ -247,10 +245,10 @@ def test_a_search_that_is_halted_twice_or_before_its_turn_leaves_nothing() -> No
         go_on.wait(10.0)
         return SimpleNamespace(fronts={"compass": ()}, stopped=True)
 
-    fronts = Fronts(lambda: None)
+    fronts = Asker(lambda: None, ParetoQuestion)
     fronts._compute = compute
     fronts._worker._load = lambda _: Load(Lane.SPARE)
-    task = FrontsTask(SHIP, 0, ("tilt_rms", "velocity_rms"))
+    task = ParetoQuestion(scenario=SHIP)
     fronts.begin(task)
     assert begun.wait(5.0)
     fronts.halt()

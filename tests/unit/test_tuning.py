@@ -59,7 +59,7 @@ def test_same_input_same_table():
     )
     first, second = tune_table(scenario(), settings), tune_table(scenario(), settings)
     np.testing.assert_array_equal(first.cost, second.cost)
-    assert first.rows() == second.rows()
+    assert first.pairs() == second.pairs()
 
 
 def test_drift_has_the_asked_rms_over_both_axes():
@@ -90,7 +90,7 @@ def test_progress_rises_to_one_and_cancel_stops():
     found = tune_table(scenario(), COARSE, progress=seen.append)
     assert found.status == "ok" and seen == sorted(seen) and seen[-1] == pytest.approx(1.0)
     stopped = tune_table(scenario(), COARSE, cancelled=lambda: True)
-    assert stopped.status == "stopped" and stopped.rows() == [] and np.all(np.isnan(stopped.best))
+    assert stopped.status == "stopped" and stopped.pairs() == [] and np.all(np.isnan(stopped.best))
     with pytest.raises(InputError, match="stopped"):
         with_table(scenario(), stopped)
 
@@ -102,7 +102,7 @@ def test_the_table_goes_into_the_scenario():
     assert [m.name for m in made.method] == ["free", "adaptive (tuned)"]
     policy = made.method[1].policy
     assert policy.id == "adaptive"
-    assert policy.model_dump(mode="json")["table"] == found.rows()
+    assert policy.model_dump(mode="json")["table"] == found.pairs()
     assert made.method[1].network.id == "unity2"
     run = simulate(made)
     assert run.methods[1].status == "ok"

@@ -121,7 +121,7 @@ def _equation_8(runs: Runs) -> Numbers:
         settings = TuningSettings.model_validate(
             {"step": 0.1, "differences_kn": [0.0, 3.0], "network": network}
         )
-        rows = tune_table(type(sun_scenario()).parse(base), settings).rows()
+        rows = tune_table(type(sun_scenario()).parse(base), settings).pairs()
         return float(rows[0][1])
 
     def make() -> Numbers:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from navcore.design.designs import Designs
+from navcore.design.judged import Designs
 from navcore.design.measures import Setting
 from navcore.design.shares import Limit
 from navcore.design.ship import Ship
@@ -16,7 +16,7 @@ from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, limit_unit
 from navcore.scenario.method import Method
-from schuler_bench.jobs.judge import Odds
+from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots.effective import growth_text
 from schuler_bench.plots.limits import SIGNS, limit_words, short_label
 from schuler_bench.plots.table import cell, row, table

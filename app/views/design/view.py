@@ -3,14 +3,17 @@
 from typing import Any
 
 from navcore.design.budget import Budget
+from navcore.design.judged import Designs
 from navcore.design.shares import Share
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.questions.budget import BudgetQuestion
+from navcore.questions.design import DesignQuestion
 from navcore.scenario.model import Scenario
+from navcore.study.robust import Robust
 from schuler_bench.editing import edits
-from schuler_bench.jobs.designer import LimitsTask
-from schuler_bench.jobs.judge import Odds
+from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.odds import Odds, without_methods
 from schuler_bench.plots.budgets import steady_budget
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.session.display import Display
@@ -53,7 +56,7 @@ class DesignView(PlotlyView):
         super().__init__(frame)
         self._budgeter = frame.session.searches.asking["budget"]
         searches = frame.session.searches
-        self._judge, self._limits = searches.judge, searches.limits
+        self._judge, self._limits = searches.judge, searches.asking["design"]
         self._drawn: Budget | None = None
         self._known: object = None
         frame.commands.register(TAKE_DESIGN, self._take)
@@ -152,10 +155,10 @@ class DesignView(PlotlyView):
         run = self.session.run
         html = limits_wanted() if picture and self.session.display.budget == "limits" else ""
         if not picture and run is not None:
-            self._judge.follow(run.scenario)
+            self._judge.judge(run.scenario)
             note = notices.note((*self._judge.words, *self._limits.words), "warning")
             scenario = run.scenario
-            found = self._limits.beside(scenario)
+            found = designs_beside(self._limits, scenario)
             html = designs_html(run, lambda method: self._judge.odds(scenario, method), found, note)
         show_html(self._table, Text('<div class="sb-wide sb-table">{html}</div>', html=html) if html else "")
 
@@ -165,13 +168,13 @@ class DesignView(PlotlyView):
         with notices.told(self.frame.client, Text("The designs cannot be found"), self.frame.refresh):
             with session.lock:
                 scenario = session.scenario
-            self._limits.begin(LimitsTask(scenario, self._over.study))
+            self._limits.begin(DesignQuestion(scenario=scenario, over=self._over.study))
 
     def _take(self, text: str) -> None:
         """Put the design with this place into the method that is edited."""
         session = self.session
         with session.lock:
-            found = self._limits.beside(session.scenario)
+            found = designs_beside(self._limits, session.scenario)
             if found is None or not text.isdecimal() or int(text) >= len(found.methods):
                 return
             share = found.methods[int(text)]
@@ -188,6 +191,13 @@ class DesignView(PlotlyView):
             asked = BudgetQuestion(scenario=scenario)
             if asked not in (self._budgeter.asked, self._budgeter.under_way):
                 self._budgeter.begin(asked)
+
+
+def designs_beside(limits: Asker, scenario: Scenario) -> Designs | Robust | None:
+    """Designs for the same ship and limits; None when there are none."""
+    asked = limits.asked
+    same = asked is not None and without_methods(asked.scenario) == without_methods(scenario)
+    return limits.result if same else None
 
 
 def _as_table(display: Display, scenario: Scenario) -> bool:

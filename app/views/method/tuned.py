@@ -21,7 +21,7 @@ _MARKS = (1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 def table_svg(tuning: Tuning, color: str) -> str:
     """Our coefficients as dots and a line, Sun's Table 1 dashed."""
-    rows = [tuple(row) for row in tuning.rows()]
+    rows = [tuple(row) for row in tuning.pairs()]
     across = round_up(max(*(kn for kn, _ in rows), SUN_TABLE[-1][0]), _MARKS)
     high = round_up(max(*(xi for _, xi in rows), *(xi for _, xi in SUN_TABLE)), _MARKS)
     width, height = WIDTH - _LEFT - _RIGHT, HEIGHT - _TOP - _BOTTOM

@@ -9,10 +9,10 @@ from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
+from navcore.questions.adapt import AdaptQuestion
 from navcore.scenario.method import Method
 from schuler_bench.editing import form
 from schuler_bench.editing.form import FieldSpec
-from schuler_bench.jobs.designer import TableTask
 from schuler_bench.plots import style
 from schuler_bench.shell import notices
 from schuler_bench.shell.control import Control, Section
@@ -46,7 +46,7 @@ class TuningPanel:
     def __init__(self, frame: Frame, tab: Tab, order: float) -> None:
         gui = frame.gui
         self._client, self._session, self._network = frame.client, frame.session, None
-        self._tuner = frame.session.searches.tuner
+        self._tuner = frame.session.searches.asking["adapt"]
         self._fields: dict[str, Any] = {}
         with tab:
             self._folder = gui.add_folder(_TITLE, order=order, expand_by_default=False)
@@ -93,7 +93,7 @@ class TuningPanel:
     def _find(self) -> None:
         with self._session.lock:
             scenario = self._session.scenario
-        self._tuner.begin(TableTask(scenario, self._settings()))
+        self._tuner.begin(AdaptQuestion(scenario=scenario, loop=self._settings()))
 
     def _take(self) -> None:
         """Give the method the table that was found."""

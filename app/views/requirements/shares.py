@@ -2,7 +2,7 @@
 
 from navcore.design.shares import wilson
 from navcore.foundation.text import Text
-from schuler_bench.jobs.judge import Odds
+from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots.table import cell
 from schuler_bench.plots.units import number
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
 from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of
-from schuler_bench.jobs.judge import Odds
+from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots import style
 from schuler_bench.plots.limits import SIGNS
 from schuler_bench.plots.pinned import Pinned, pinned_methods, together

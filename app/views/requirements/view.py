@@ -64,7 +64,7 @@ class RequirementsView(PictureView[str]):
         )
         run = self.session.run
         if run is not None:
-            self._judge.follow(run.scenario)
+            self._judge.judge(run.scenario)
 
     def _typed(self, argument: str) -> None:
         """Take over a limit as typed: its key and a number, or nothing."""

@@ -3,11 +3,11 @@
 import math
 from typing import Any
 
-from navcore.design.pareto import Pareto
+from navcore.design.fronts import Pareto
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
-from schuler_bench.jobs.designer import FrontsTask
+from navcore.questions.pareto import ParetoQuestion
 from schuler_bench.session.display import AXES
 from schuler_bench.shell import notices
 from schuler_bench.shell.searching import SearchControls, reveal, show_html
@@ -15,7 +15,8 @@ from schuler_bench.shell.view import Frame, if_user
 from schuler_bench.views.tune.change import change_network
 from schuler_bench.views.tune.fronts import COMMAND, nearest, setting_text
 
-ACROSS, UP = "across", "up"
+_BOXES = {one.name: one for one in ParetoQuestion.options()}
+ACROSS, UP = _BOXES["x"].label, _BOXES["y"].label
 FIND, STOP = Text("Find the fronts"), Text("Stop finding")
 _OLD = Text("of an earlier scenario: find the fronts again")
 _SO_FAR = Text("The search was stopped: these are the fronts so far.")
@@ -33,15 +34,15 @@ class FrontsPanel:
 
     def __init__(self, frame: Frame) -> None:
         self.frame, self.session = frame, frame.session
-        self._fronts = frame.session.searches.fronts
+        self._fronts = frame.session.searches.asking["pareto"]
         frame.commands.register(COMMAND, self._pick)
 
     def build(self) -> None:
         """Make the controls."""
         gui, words = self.frame.gui, {QUANTITIES[name].label: name for name in AXES}
         self._axes: dict[str, Any] = {
-            "front_x": gui.add_dropdown(ACROSS, tuple(words), hint=Text("Objective on the horizontal axis.")),
-            "front_y": gui.add_dropdown(UP, tuple(words), hint=Text("Objective on the vertical axis.")),
+            "front_x": gui.add_dropdown(ACROSS, tuple(words), hint=_BOXES["x"].help),
+            "front_y": gui.add_dropdown(UP, tuple(words), hint=_BOXES["y"].help),
         }
         for field, box in self._axes.items():
             box.on_update(
@@ -102,7 +103,10 @@ class FrontsPanel:
             return
         with session.lock:
             whole = session.display.beyond_sliders
-            task = FrontsTask(session.scenario, session.selected, self.objectives, whole=whole)
+            x, y = self.objectives
+            task = ParetoQuestion(
+                scenario=session.scenario, x=x, y=y, method=session.selected, beyond_sliders=whole
+            )
         self._fronts.begin(task)
 
     def _pick(self, text: str) -> None:

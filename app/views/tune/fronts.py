@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from navcore.design.pareto import Pareto, Point
+from navcore.design.fronts import Pareto, Point
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from navcore.design.pareto import Pareto, measured
+from navcore.design.fronts import Pareto
+from navcore.design.pareto import measured
 from navcore.design.profile import Profiles
 from navcore.engine.run import Run
 from navcore.foundation.text import Text

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from navcore.engine.load import estimated_seconds
+from navcore.questions.design import DesignQuestion
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.load import heavy_load
-from schuler_bench.jobs.search import Search
+from schuler_bench.jobs.asking import Asker
 
 if TYPE_CHECKING:
-    from navcore.design.designs import Designs
     from navcore.design.shares import Share
 
 STILL_S = 0.7
@@ -22,22 +21,6 @@ FEW, SEEDS = 24, 200
 """First for a guess, then for the interval."""
 _LONGEST_S = 120.0
 """Processor time that the seeds of all methods may take."""
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Methods to judge.
-
-    Attributes
-    ----------
-    scenario : Scenario
-        Its methods are those that are to be judged.
-    seeds : int
-        Runs of each.
-    """
-
-    scenario: Scenario
-    seeds: int
 
 
 @dataclass(frozen=True)
@@ -56,7 +39,7 @@ class Odds:
     seeds: int
 
 
-class Judge(Search[Asked, "Designs"]):
+class Judge(Asker):
     """Judges the methods of one session's scenario; a method that stays as it was is not run again.
 
     Parameters
@@ -73,20 +56,13 @@ class Judge(Search[Asked, "Designs"]):
     """
 
     def __init__(self, tell: Callable[[], None], name: str = "judge", still_s: float = STILL_S) -> None:
-        super().__init__(
-            tell,
-            _judge,
-            lambda found: not found.stopped,
-            name=name,
-            load=lambda asked: heavy_load(asked.scenario),
-            still_s=still_s,
-        )
+        super().__init__(tell, DesignQuestion, name, still_s=still_s, keeps=False)
         # methods are frozen, and so hashable, which their type does not say
         self.known: Mapping[Any, Odds] = {}
         self._base: Scenario | None = None
         self._wanted: Scenario | None = None
 
-    def follow(self, scenario: Scenario) -> None:
+    def judge(self, scenario: Scenario) -> None:
         """Judge the methods of this scenario, unless that is done or under way."""
         if not scenario.requirement:
             self._wanted = None
@@ -121,7 +97,8 @@ class Judge(Search[Asked, "Designs"]):
         fresh = tuple(method for method in methods if method not in seen)
         few = tuple(method for method in methods if seen.get(method, most) < most)
         chosen, seeds = (fresh, min(FEW, most)) if fresh else (few, most)
-        asked = Asked(scenario.model_copy(update={"method": chosen}), seeds)
+        of = scenario.model_copy(update={"method": chosen})
+        asked = DesignQuestion(scenario=of, seeds=seeds, as_set=True)
         if chosen and asked != self.under_way:
             self._submit(asked, 0.0)
         elif not chosen:
@@ -146,9 +123,3 @@ def without_methods(scenario: Scenario) -> Scenario:
     """Ship and limits of a scenario: two that are equal judge a method alike."""
     plain = type(scenario.view)()
     return scenario.model_copy(update={"method": (), "title": "", "source": "", "view": plain})
-
-
-def _judge(asked: Asked, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Designs | None:
-    from navcore.design.designs import designs
-
-    return designs(asked.scenario, asked.seeds, as_set=True, progress=progress, cancelled=cancelled)
