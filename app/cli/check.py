@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 _READERS = ("navcore.checks.imu", "navcore.io.csv", "navcore.io.nmea_recording", "navcore.io.tables")
 _SCENARIO_READERS = ("schuler_bench.cli.check_scenario",)
-_BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io", "h5py")}
+_SCIENTIFIC = ("scipy.io", "h5py")
+_BY_ENDING = {
+    ".parquet": ("pyarrow.parquet",),
+    **dict.fromkeys((".mat", ".nc", ".nc4", ".cdf", ".h5", ".hdf5"), _SCIENTIFIC),
+}
 """Modules that read the file, imported before the bounds are set."""
 
 

@@ -21,7 +21,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.io.column_map import ColumnMap, read_map
-from navcore.io.containers import is_container, open_container
+from navcore.io.containers.opening import is_container, open_container
 from navcore.io.imu_table import is_imu_names, is_imu_table
 from navcore.io.source import require_file
 from navcore.sensors.recorded_imu import ImuRecord, is_psins, read_imu, upward_axis

@@ -15,7 +15,8 @@ from navcore.foundation.kernel_files import replacing
 from navcore.foundation.text import Text
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, known_columns
 from navcore.io.columns import MOST_CELLS, MOST_COLUMNS
-from navcore.io.containers import MOST_UNPACKED_BYTES, Container, is_container, open_container
+from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
+from navcore.io.containers.opening import is_container, open_container
 from navcore.io.csv import layout
 from navcore.io.imu_columns import AXES, DIMENSIONS, imu_columns
 from navcore.io.imu_table import imu_layout, is_imu_names, is_imu_table

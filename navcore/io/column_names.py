@@ -101,6 +101,18 @@ _OF_ERDDAP = {
     "platform_course": "cog",
     "platform_orientation": "heading",
     "platform_heading": "heading",
+    "platform_yaw": "heading",
+    "platform_yaw_angle": "heading",
+    "platform_yaw_fore_starboard": "heading",
+    "platform_pitch": "pitch",
+    "platform_pitch_angle": "pitch",
+    "platform_pitch_fore_up": "pitch",
+    "platform_roll": "roll",
+    "platform_roll_angle": "roll",
+    "platform_roll_starboard_down": "roll",
+    "height_above_reference_ellipsoid": "height",
+    "eastward_platform_velocity": "ve",
+    "northward_platform_velocity": "vn",
     "platform_speed_wrt_sea_water": "speed",
 }
 """Standard names of the CF conventions, and those of SAMOS in ERDDAP."""
@@ -189,6 +201,14 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
             column = chosen.pop(DATE)
             chosen[UTC] = replace(column, stem=UTC)
     return chosen
+
+
+def names_unit(column: Column) -> bool:
+    """Whether the name of a column itself gives its unit."""
+    bare, texts = without_brackets(column.name)
+    last = plain_name(bare).rpartition("_")[2]
+    dimension = QUANTITIES[column.stem].dimension
+    return bool(written(texts, dimension).unit or unit_of(last, dimension))
 
 
 def plain_name(name: str) -> str:

@@ -1,16 +1,24 @@
-"""Compressed text files: gzip, zip with one member, zstd; unpacked to a bounded size."""
+"""Compressed text files: gzip, bzip2, xz, zstd, zip with one member; unpacked to a bounded size."""
 
+import bz2
 import gzip
 import io
+import lzma
 import zipfile
 import zlib
 from pathlib import Path
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.io.known_files import refuse_known
 
 _GZIP, _ZIP, _ZSTD = b"\x1f\x8b", b"PK\x03\x04", b"\x28\xb5\x2f\xfd"
-_NAMES = {_GZIP: "gzip", _ZIP: "zip", _ZSTD: "zstd"}
+_BZIP, _XZ = b"BZh", b"\xfd7zX"
+_NAMES = {_GZIP: "gzip", _ZIP: "zip", _ZSTD: "zstd", _BZIP: "bzip2", _XZ: "xz"}
+_DAMAGED = (
+    OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError, NotImplementedError, lzma.LZMAError,
+    ValueError,
+)  # fmt: skip
 
 
 def unpacked(path: Path, most: int, field: str = "") -> bytes:
@@ -30,6 +38,7 @@ def unpacked(path: Path, most: int, field: str = "") -> bytes:
     InputError
         Damaged, encrypted, more than ``most`` bytes, or a zip file that does not hold one file alone.
     """
+    refuse_known(path, field)
     with path.open("rb") as stream:
         head = stream.read(4)
     kind = next((magic for magic in _NAMES if head.startswith(magic)), b"")
@@ -39,14 +48,32 @@ def unpacked(path: Path, most: int, field: str = "") -> bytes:
         content = _READERS[kind](path, most + 1)
     except InputError as error:
         raise InputError([Fault(path.name, field, f.value, f.allowed) for f in error.faults]) from None
-    except (OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError, NotImplementedError) as problem:
+    except _DAMAGED as problem:
         why = (str(problem).splitlines() or [type(problem).__name__])[0][:120]
         allowed = Text("cannot be unpacked as a {kind} file ({why})", kind=_NAMES[kind], why=why)
         raise InputError(Fault(path.name, field, None, allowed)) from None
     if len(content) > most:
         allowed = Text("unpacks to more than {most} MiB: cut it", most=most >> 20)
         raise InputError(Fault(path.name, field, None, allowed))
+    refuse_known(path, field, content)
+    if any(content.startswith(start) for start in _PACKED_TABLES):
+        allowed = Text(
+            "holds a {kind} table inside of {packing}: unpack it first",
+            kind=_named(content),
+            packing=_NAMES[kind],
+        )
+        raise InputError(Fault(path.name, field, None, allowed))
     return content
+
+
+_PACKED_TABLES = {
+    b"PAR1": "Parquet", b"MATLAB ": "MAT", b"\x89HDF": "HDF5", b"CDF": "NetCDF", b"PK\x03\x04": "zip", _GZIP:
+    "gzip",
+}  # fmt: skip
+
+
+def _named(content: bytes) -> str:
+    return next(name for start, name in _PACKED_TABLES.items() if content.startswith(start))
 
 
 def head_of(path: Path, size: int) -> bytes:
@@ -58,7 +85,7 @@ def head_of(path: Path, size: int) -> bytes:
         return packed
     try:
         return _READERS[kind](path, size)
-    except (InputError, OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError, NotImplementedError):
+    except _DAMAGED:
         return packed
 
 
@@ -97,4 +124,14 @@ def _filled(stream: "io.RawIOBase", size: int) -> bytes:
     return b"".join(parts)
 
 
-_READERS = {_GZIP: _read_gzip, _ZIP: _read_zip, _ZSTD: _read_zstd}
+def _read_bzip(path: Path, size: int) -> bytes:
+    with bz2.open(path) as stream:
+        return stream.read(size)
+
+
+def _read_xz(path: Path, size: int) -> bytes:
+    with lzma.open(path) as stream:
+        return stream.read(size)
+
+
+_READERS = {_GZIP: _read_gzip, _ZIP: _read_zip, _ZSTD: _read_zstd, _BZIP: _read_bzip, _XZ: _read_xz}

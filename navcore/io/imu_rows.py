@@ -10,7 +10,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import Column
-from navcore.io.containers import refusing
+from navcore.io.containers.base import refusing
 from navcore.io.imu_columns import ImuColumn
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from navcore.io.cells import times
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns, plain_name
 from navcore.io.columns import MOST_COLUMNS, listed
-from navcore.io.containers import MOST_UNPACKED_BYTES, Container
+from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
 from navcore.io.epochs import numeric_times
 from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
 from navcore.io.imu_rows import COMMENTS, FIELD, HEAD_BYTES, Header, Wanted, read_rows, unix_text

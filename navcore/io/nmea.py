@@ -11,6 +11,7 @@ from pathlib import Path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
+from navcore.io.known_files import refuse_known_text
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_sentences
 from navcore.io.nmea_readings import JITTER_S, Gathered, Ordered
@@ -71,11 +72,11 @@ def read_nmea(path: Path) -> NmeaLog:
         gathered.add(sentences, clock)
     ordered = gathered.in_order()
     tally.lines += content.damaged_lines
-    _refuse_unusable(path, tally)
+    _refuse_unusable(path, tally, content.text)
     return NmeaLog(ordered, tally, content.damaged_lines, (*content.warnings(), *_warnings(tally)))
 
 
-def _refuse_unusable(path: Path, tally: Tally) -> None:
+def _refuse_unusable(path: Path, tally: Tally, text: str) -> None:
     def refuse(allowed: str, line: int = 0) -> InputError:
         where = Text("{name}, line {line}", name=path.name, line=line) if line else path.name
         return InputError(Fault(where, "", None, allowed))
@@ -111,6 +112,7 @@ def _refuse_unusable(path: Path, tally: Tally) -> None:
             Text("no time: neither a time beside the sentences nor one with its own (RMC, GGA, ZDA)")
         )
     if not total:
+        refuse_known_text(path.name, text)
         raise refuse(
             Text(
                 "not a log this reader knows: expected NMEA 0183 sentences ({kinds}) or a CSV table",

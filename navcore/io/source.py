@@ -115,10 +115,7 @@ def read_text(path: Path, field: str = "") -> FileText:
         raise InputError(Fault(path.name, field, None, Text("the file is empty")))
     raw = _unwrapped(raw)
     text, code_page = _decoded(raw)
-    odd = len(raw.translate(None, _ASCII_TEXT + (_LETTERS if code_page else _HIGH_BYTES)))
-    if code_page and len(raw.translate(None, bytes(range(0x80)))) > _MOST_LETTERS * len(raw):
-        odd = len(raw)
-    if odd > max(_MOST_ODD_BYTES * len(raw), _FEW_ODD_BYTES):
+    if _is_binary(raw, code_page):
         allowed = Text("binary content; expected a text file (NMEA 0183 or CSV)")
         raise InputError(Fault(path.name, field, None, allowed))
     text = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
@@ -161,7 +158,18 @@ def _decoded(raw: bytes) -> tuple[str, bool]:
         return raw.decode("cp1252", errors="replace"), True
 
 
-def as_utf8(raw: bytes) -> bytes:
-    """Text of any of these encodings in UTF-8."""
+def _is_binary(raw: bytes, code_page: bool) -> bool:
+    """Whether too many bytes are neither printable nor letters of the encoding."""
+    if code_page and len(raw.translate(None, bytes(range(0x80)))) > _MOST_LETTERS * len(raw):
+        return True
+    odd = len(raw.translate(None, _ASCII_TEXT + (_LETTERS if code_page else _HIGH_BYTES)))
+    return odd > max(_MOST_ODD_BYTES * len(raw), _FEW_ODD_BYTES)
+
+
+def as_utf8(raw: bytes) -> bytes | None:
+    """Text of any of these encodings in UTF-8; None for binary content."""
+    if raw.isascii() and b"\0" not in raw:
+        return raw
     raw = _unwrapped(raw)
-    return raw if raw.isascii() else _decoded(raw)[0].encode()
+    text, code_page = _decoded(raw)
+    return None if _is_binary(raw, code_page) else text.encode()

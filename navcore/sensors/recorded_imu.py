@@ -18,8 +18,9 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import unpacked
-from navcore.io.containers import is_container, open_container
+from navcore.io.containers.opening import is_container, open_container
 from navcore.io.imu_table import ImuTable, is_imu_table, read_imu_container, read_imu_table, refuse_lost
+from navcore.io.source import as_utf8
 from navcore.io.times.coarse_stamps import spread
 from navcore.io.times.even_stamps import Evenness, evenness
 
@@ -109,11 +110,12 @@ def read_imu(
             held = open_container(file) if is_container(stream.read(_HEAD_BYTES), file) else None
         if held is not None:
             return _of_table(read_imu_container(held, str(path), column_map), str(path), axes)
-        content = unpacked(file, _LARGEST_FILE, "imu.file").removeprefix(b"\xef\xbb\xbf")
-        text = content[:_HEAD_BYTES].decode() if content.isascii() else content.decode()
-    except (OSError, UnicodeDecodeError) as error:
-        binary = isinstance(error, UnicodeDecodeError)
-        reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
+        content = as_utf8(unpacked(file, _LARGEST_FILE, "imu.file"))
+        if content is None:
+            raise InputError(Fault(str(path), "imu.file", None, Text("is not a text file")))
+        text = content[:_HEAD_BYTES].decode(errors="replace")
+    except OSError as error:
+        reason = error.strerror or Text("cannot be read")
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
     if column_map is None and is_psins(text) and not is_imu_table(text):
         return _psins(content.decode(), str(path))

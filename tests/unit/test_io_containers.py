@@ -16,7 +16,7 @@ from navcore.checks.imu import check_mapped
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC, DEG, KNOT, STANDARD_GRAVITY
 from navcore.io.column_map import ColumnMap, parse_map
-from navcore.io.containers import open_container
+from navcore.io.containers.opening import open_container
 from navcore.io.recording import read_recording
 from navcore.sensors.recorded_imu import ImuRecord, read_imu
 from schuler_bench.cli import main
