@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from navcore.design.budget import Budget, budget
     from navcore.design.designs import designs
+    from navcore.design.dominance import Why, why
     from navcore.design.fronts import Pareto
     from navcore.design.judged import Designs
     from navcore.design.pareto import pareto
@@ -58,6 +59,7 @@ __all__ = [
     "Scenario",
     "Tuned",
     "Verification",
+    "Why",
     "__version__",
     "budget",
     "designs",
@@ -69,6 +71,7 @@ __all__ = [
     "simulate",
     "tune",
     "verify",
+    "why",
 ]
 
 _HOME = {
@@ -82,13 +85,13 @@ _HOME = {
     "Run": "engine.run",
     "Scenario": "scenario.model",
     "Verification": "engine.verification",
+    "Why": "design.dominance",
     "__version__": "foundation.version",
     "load": "scenario.file",
     "metrics": "engine.measures",
     "parse_network": "networks",
     "presets": "scenario.file",
     "simulate": "engine.simulation",
-    "verify": "engine.verification",
 }
 
 

@@ -5,11 +5,16 @@ from typing import Any
 
 from navcore.foundation.answers import Answer
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.questions.base import Cancelled, Progress, Question
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs.load import heavy_load, spare_load
 from schuler_bench.jobs.refusals import refusals
 from schuler_bench.jobs.search import Search
+
+CHANGED = Text("Stopped: the scenario was changed meanwhile.")
+_SPARE_S = 0.5, 0.25
+"""Of spare work: time under way before its progress is reported first, and between two reports."""
 
 
 class Asker(Search[Any, Any]):
@@ -53,6 +58,8 @@ class Asker(Search[Any, Any]):
             keeps=keeps,
         )
         self.question = question
+        if question.spare:
+            self.report_after_s, self.report_every_s = _SPARE_S
         self.accepted: Scenario | None = None
 
     def begin(self, asked: Question) -> None:
@@ -68,6 +75,13 @@ class Asker(Search[Any, Any]):
     def beside(self, asked: Question) -> Any:
         """Answer to exactly this question; None where there is none."""
         return self.result if self.asked == asked else None
+
+    def leave(self, scenario: Scenario) -> None:
+        """Stop what is asked of another scenario than this one, which is the session's now."""
+        self.words = ()
+        asked = self.under_way
+        if asked is not None and asked.scenario != scenario:
+            self.cancel(CHANGED)
 
     def accept(self, scenario: Scenario) -> None:
         """Note that the answer has been taken over into this scenario."""

@@ -3,6 +3,7 @@
 import logging
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from navcore.foundation.errors import InputError, StoppedError
@@ -17,6 +18,13 @@ Asked = TypeVar("Asked")
 Found = TypeVar("Found")
 _STOPPING = Text("Stopping: what was found so far is kept.")
 _log = logging.getLogger("schuler.search")
+
+
+@dataclass(frozen=True, eq=False)
+class _Job(Generic[Asked]):
+    """One submission: the same thing asked twice is two jobs."""
+
+    asked: Asked
 
 
 class Search(Generic[Asked, Found]):
@@ -52,8 +60,6 @@ class Search(Generic[Asked, Found]):
         The last complete one, or None.
     asked
         What that is of.
-    under_way
-        What is being computed now, or None.
     words : tuple of str
         Why there is no newer result: stopped, refused, failed. While one is under way: what is to be known.
     """
@@ -75,12 +81,21 @@ class Search(Generic[Asked, Found]):
         self._tell, self._compute, self._complete = tell, compute, complete
         self._stopped, self._name = stopped, name
         self._lock = threading.Lock()
-        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=load or _heavy, still_s=still_s)
-        self.under_way: Asked | None = None
+        of = load or _heavy
+        self._worker: Worker[_Job[Asked]] = Worker(
+            self._work, visitor=name, load=lambda job: of(job.asked), still_s=still_s
+        )
+        self._job: _Job[Asked] | None = None
         self.fraction: float | None = None
         self.result: Found | None = None
         self.asked: Asked | None = None
         self.words: tuple[str, ...] = ()
+
+    @property
+    def under_way(self) -> Asked | None:
+        """Give what is being computed now, or None."""
+        job = self._job
+        return None if job is None else job.asked
 
     def begin(self, asked: Asked) -> None:
         """Compute this, in place of what is under way."""
@@ -88,18 +103,19 @@ class Search(Generic[Asked, Found]):
         self._tell()
 
     def _submit(self, asked: Asked, fraction: float | None) -> None:
-        note = self._worker.note(asked)
-        self._set(fraction, (note,) if note else (), asked)
-        self._worker.submit(asked)
+        job = _Job(asked)
+        note = self._worker.note(job)
+        self._set(fraction, (note,) if note else (), job)
+        self._worker.submit(job)
 
-    def _set(self, fraction: float | None, words: tuple[str, ...], under_way: Asked | None) -> None:
+    def _set(self, fraction: float | None, words: tuple[str, ...], job: _Job[Asked] | None) -> None:
         with self._lock:
-            self.fraction, self.words, self.under_way = fraction, words, under_way
+            self.fraction, self.words, self._job = fraction, words, job
             self._halted = False
 
     def cancel(self, why: str = "") -> None:
         """Stop, and say why; an earlier result stays."""
-        if self.fraction is None and self.under_way is None:
+        if self.fraction is None and self._job is None:
             return
         self._set(None, self._because(why), None)
         self._worker.cancel()
@@ -109,11 +125,11 @@ class Search(Generic[Asked, Found]):
     def halt(self) -> None:
         """Stop, and keep what was found so far where the job gives that; the second time, drop it."""
         with self._lock:
-            first = self._keeps and self.under_way is not None and not self._halted
+            first = self._keeps and self._job is not None and not self._halted
             self._halted = self._halted or first
         if first and self._worker.cancel():
             with self._lock:
-                if self._halted and self.under_way is not None:
+                if self._halted and self._job is not None:
                     self.words = (_STOPPING,)
             self._tell()
         else:
@@ -147,7 +163,8 @@ class Search(Generic[Asked, Found]):
         """Tell that there is a new result."""
         self._tell()
 
-    def _work(self, asked: Asked, watch: Watch) -> None:
+    def _work(self, job: _Job[Asked], watch: Watch) -> None:
+        asked = job.asked
         last_s = self.report_after_s - self.report_every_s
 
         def progress(fraction: float) -> None:
@@ -156,7 +173,7 @@ class Search(Generic[Asked, Found]):
                 return
             last_s = watch.elapsed_s
             with self._lock:
-                if self.under_way is not asked:
+                if self._job is not job:
                     return
                 self.fraction = fraction
             self._tell()
@@ -166,7 +183,7 @@ class Search(Generic[Asked, Found]):
             result = self._carry_out(asked, progress, watch)
         except ElsewhereLost:
             with self._lock:
-                if self.under_way is asked:
+                if self._job is job:
                     self.fraction, self.words = 0.0, (LOST,)
             self._tell()
             raise
@@ -180,9 +197,9 @@ class Search(Generic[Asked, Found]):
             words = (Text("Something went wrong: {name}: {error}", name=name, error=why),)
         complete = result is not None and self._complete(result)
         with self._lock:
-            if self.under_way is not asked:  # stopped, or another one waits
+            if self._job is not job:  # stopped, or another one waits
                 return
-            self.fraction = self.under_way = None
+            self.fraction = self._job = None
             ended_early = self._halted if result is None else not complete
             self.words = words or (self._because() if ended_early else ())
             if complete:

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from navcore.engine.run import Run
 from navcore.questions import QUESTIONS
+from navcore.questions.why import WhyQuestion
 from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.odds import Judge
 from schuler_bench.jobs.studier import Studier
 from schuler_bench.jobs.sweeper import Sweeper
-from schuler_bench.jobs.why import Explainer
 
 _log = logging.getLogger("schuler.searches")
 
@@ -25,8 +25,6 @@ class Searches:
 
     Attributes
     ----------
-    explainer : Explainer
-        What dominates the run.
     asking : dict of Asker
         By the name of the question that it asks.
     judge : Judge
@@ -40,13 +38,11 @@ class Searches:
     def __init__(self, name: str) -> None:
         self._lock = threading.Lock()
         self._watchers: list[Callable[[], None]] = []
-        self.explainer = Explainer(self._tell, name)
         self.asking = {id: Asker(self._tell, question, name) for id, question in QUESTIONS.items()}
         self.judge = Judge(self._tell, name)
         self.sweeper = Sweeper(self._tell, name)
         self.studier = Studier(self._tell, name)
         self._all = (
-            self.explainer,
             *self.asking.values(),
             self.judge,
             self.sweeper,
@@ -69,7 +65,7 @@ class Searches:
 
     def changed(self) -> None:
         """The scenario has changed: the processors belong to its run."""
-        self.explainer.cancel()
+        self.asking["why"].cancel()
         self.judge.cancel()
         self.sweeper.cancel()
 
@@ -78,7 +74,7 @@ class Searches:
         with self._lock:
             watched = bool(self._watchers)
         if watched:
-            self.explainer.follow(run)
+            self.asking["why"].follow(WhyQuestion.of(run))
 
     def stop(self) -> None:
         """End the threads."""

@@ -11,11 +11,11 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import log_name
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.envelopes import Envelopes, Simulate
 from schuler_bench.jobs.load import refuse_too_large, run_load, runs_on_demand
 from schuler_bench.jobs.long_runs import run_for
 from schuler_bench.jobs.searches import Searches
-from schuler_bench.jobs.verifier import Verifier, Verify
 from schuler_bench.jobs.words import for_a_page
 from schuler_bench.jobs.worker import Watch, Worker
 from schuler_bench.session.display import Display
@@ -40,8 +40,8 @@ class Session:
         Name of the preset it came from.
     folder : Path
         For uploads; need not exist.
-    simulate, verify : callable, optional
-        In place of `navcore.engine.simulation.simulate` and `navcore.engine.verification.verify`.
+    simulate : callable, optional
+        In place of `navcore.engine.simulation.simulate`.
 
     Attributes
     ----------
@@ -69,8 +69,6 @@ class Session:
         The scenario has changed since ``run``.
     display : Display
         What the pictures are shown with.
-    verifier : Verifier
-        Compares the scenario with the full strapdown when asked.
     pins : Pins
         Runs that were pinned.
     envelopes : Envelopes
@@ -86,7 +84,6 @@ class Session:
         origin: str,
         folder: Path,
         simulate: Simulate | None = None,
-        verify: Verify | None = None,
     ) -> None:
         self.id, self._name = id, (name := log_name(id))
         self.lock = threading.RLock()
@@ -110,7 +107,6 @@ class Session:
         self._worker: Worker[State] = Worker(
             self._work, visitor=name, load=lambda state: run_load(state.scenario)
         )
-        self.verifier = Verifier(lambda: self._tell(lambda view: view.verification_changed()), verify, name)
         self.searches = Searches(name)
         self.pins = Pins(self._pins_changed, self._simulate, name)
         self.envelopes = Envelopes(
@@ -119,6 +115,11 @@ class Session:
             self._pictures_changed,
             name=name,
         )
+
+    @property
+    def verifier(self) -> Asker:
+        """Compares the scenario with the full strapdown when asked."""
+        return self.searches.asking["verify"]
 
     # ------------------------------------------------------------ pages
 
@@ -139,7 +140,6 @@ class Session:
             self._views = [other for other in self._views if other is not view]
             if not self._views:
                 self._worker.cancel()
-                self.verifier.cancel()
                 self.envelopes.cancel()
             if self.presenter is view:
                 self.present(None)
@@ -260,7 +260,7 @@ class Session:
 
     def _show_state(self, state: State, by: object) -> None:
         self._take(state)
-        self.verifier.follow(state.scenario)
+        self.verifier.leave(state.scenario)
         self.searches.changed()
         self._tell(lambda view: view.scenario_changed(by))
         self.on_change()
@@ -314,7 +314,7 @@ class Session:
 
     def close(self, *, keep_files: bool = False) -> None:
         """End the workers and remove the uploaded files, unless they are to be found again."""
-        for working in (self._worker, self.verifier, self.searches, self.pins, self.envelopes):
+        for working in (self._worker, self.searches, self.pins, self.envelopes):
             working.stop()
         if not keep_files:
             self.uploads.clear()

@@ -10,12 +10,13 @@ import numpy as np
 from pydantic import BaseModel
 
 from navcore.engine.run import MethodRun, Run, span_of
+from navcore.engine.verification import Verification
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.quantities import NAMES
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.verifier import Verified
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.plots.envelope import Envelope
 from schuler_bench.session.display import Display
 from schuler_bench.session.history import differences
@@ -84,10 +85,34 @@ def shown(session: Session) -> Shown | None:
         laid(pins, run.scenario),
         baseline,
         None,
-        _placed(session.verifier.beside(run.scenario), display),
+        _placed(verified_beside(session.verifier, run.scenario), display),
         session.envelopes.beside(run.scenario, display.envelope),
         selected,
     )
+
+
+@dataclass(frozen=True)
+class Verified:
+    """A verification to be shown beside a run.
+
+    Attributes
+    ----------
+    verification : Verification
+        Of the same methods.
+    old : bool
+        It is of an earlier scenario.
+    """
+
+    verification: Verification
+    old: bool
+
+
+def verified_beside(verifier: Asker, scenario: Scenario) -> Verified | None:
+    """Give the last verification for a run of a scenario, if its methods have the same names."""
+    result, of = verifier.result, None if verifier.asked is None else verifier.asked.scenario
+    if result is None or of is None or [m.name for m in of.method] != [m.name for m in scenario.method]:
+        return None
+    return Verified(result, of != scenario)
 
 
 def _placed(verified: Verified | None, display: Display) -> Verified | None:

@@ -42,8 +42,5 @@ class View(Protocol):
     def front_changed(self, front: Set[str]) -> None:
         """Bring these tabs to the front: the page that presents has them there."""
 
-    def verification_changed(self) -> None:
-        """Show how far the verification is, or what it gave."""
-
     def envelope_progressed(self) -> None:
         """Show how far the envelope is, or why there is none."""

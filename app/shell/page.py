@@ -60,7 +60,6 @@ class Page:
         self._closed = self._built = self._tells = False
         self._say_again_s = 0.0
         self._window: Window = (0, 0, False, False, 1.0, Columns())
-        self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
         self._views: list[View] = []
@@ -237,14 +236,6 @@ class Page:
         if not self._closed:
             self.commands.ask_page("front", "|".join(sorted(front)))
             self.client.flush()
-
-    def verification_changed(self) -> None:
-        """A verification has come further, or has ended."""
-        self._jobs_changed()
-        fresh = self.session.verifier.result is not self._shown_result
-        self._shown_result = self.session.verifier.result
-        if fresh:
-            self._again_pictures()
 
     def envelope_progressed(self) -> None:
         """The envelope of the error curves has come further, or cannot be made."""

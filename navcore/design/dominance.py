@@ -7,8 +7,9 @@ are 1 together.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from navcore.averaging.lines import line_phases
 from navcore.design.ship import Ship
 from navcore.design.sources import contributions
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
@@ -76,9 +78,19 @@ class Cause:
     share: float
     swing: Swing
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        return {
+            "quantity": self.quantity.name,
+            "source": self.source or None,
+            "share": self.share,
+            "parts": self.swing.shares,
+            "beats": self.swing.beats,
+        }
+
 
 @dataclass(frozen=True)
-class Why:
+class Why(Answer):
     """Sources that dominate a run.
 
     Attributes
@@ -89,15 +101,41 @@ class Why:
         Periods at the start of the run, s; the Foucault period may be infinite.
     remarks : tuple of str
         What the statement rests on, where that is not the run itself.
-    complete : bool
-        False when it was cancelled.
+    stopped : bool
+        It was cancelled.
     """
 
     methods: tuple[tuple[str, tuple[Cause, ...]], ...]
     schuler_s: float
     foucault_s: float
     remarks: tuple[str, ...]
-    complete: bool
+    stopped: bool = False
+
+    def document(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        return {
+            "schuler_s": self.schuler_s,
+            "foucault_s": self.foucault_s if math.isfinite(self.foucault_s) else None,
+            "methods": [
+                {"name": name, "causes": [one.as_dict() for one in causes]} for name, causes in self.methods
+            ],
+            "remarks": list(self.remarks),
+        }
+
+    def rows(self) -> Iterator[Table | str]:
+        """Give for each error of each method its largest source with its share, and how it moves."""
+        share = Text("share %")
+        heads = Text("method"), Text("error"), Text("source"), share, Text("moves as"), share
+        rows = []
+        for name, causes in self.methods:
+            for k, one in enumerate(causes):
+                moves = one.swing.largest
+                shares = 100.0 * one.share if one.source else None, 100.0 * one.swing.shares[moves]
+                first, second = (number(value, 3) for value in shares)
+                cells = one.quantity.name, one.source or "-", first, moves, second
+                rows.append((name if k == 0 else "", *cells))
+        yield Table(tuple(map(Column, heads)), tuple(rows))
+        yield from (Text("note: {text}", text=text) for text in self.remarks)
 
 
 def why(
@@ -137,7 +175,7 @@ def why(
         schuler_s=math.tau / scenario.omega_s,
         foucault_s=math.tau / abs(rate) if rate else math.inf,
         remarks=remarks,
-        complete=not cancelled(),
+        stopped=cancelled(),
     )
 
 

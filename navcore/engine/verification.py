@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from navcore.engine.drivers.common import STOPPED, Cancelled, Progress
 from navcore.engine.environment import Environment, environment
 from navcore.engine.levels import Level, level_text, levels, limit_texts, worst
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.answers import Answer, Column, Table
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG, HOUR
@@ -59,7 +61,7 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Verification:
+class Verification(Answer):
     """Both runs of a scenario and how far they are apart.
 
     Attributes
@@ -76,16 +78,47 @@ class Verification:
     statements : tuple of str
         Plain words: why the linear model is not to be trusted here (tilt, latitude, duration, a method that
         diverged ...); empty when nothing speaks against it.
-    complete : bool
-        False when it was cancelled: both runs hold what was computed.
+    stopped : bool
+        It was cancelled: both runs hold what was computed.
     """
 
     strapdown: Run
     linear: Run
     differences: tuple[dict[str, Difference], ...]
     statements: tuple[str, ...]
-    complete: bool
+    stopped: bool = False
     levels: tuple[dict[str, Level], ...] = ()
+
+    def document(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        pairs = zip(self.strapdown.methods, self.linear.methods, self.differences, strict=True)
+        return {
+            "trusted": not self.statements,
+            "statements": list(self.statements),
+            "methods": [
+                {
+                    "name": full.method.name,
+                    "status": {"strapdown": full.status, "error_model": simple.status},
+                    "differences": {name: vars(one) for name, one in difference.items()},
+                }
+                for full, simple, difference in pairs
+            ],
+        }
+
+    def rows(self) -> Iterator[Table | str]:
+        """Give the largest differences of each method, and why the model is not to be trusted."""
+        yield Text("full strapdown minus linear model on the same noise: largest difference")
+        heads = [Column(error.symbol, error.kind.unit, 3) for error in ERRORS]
+        rows = [
+            (
+                full.method.name,
+                *(difference[error.name].peak / error.kind.size if difference else None for error in ERRORS),
+            )
+            for full, difference in zip(self.strapdown.methods, self.differences, strict=True)
+        ]
+        yield Table((Column(Text("method")), *heads), tuple(rows))
+        for text in self.statements:
+            yield Text("warning: {text}", text=text)
 
 
 def why_not(scenario: Scenario) -> str:
@@ -155,7 +188,7 @@ def verify(
         linear=second,
         differences=differences,
         statements=tuple(_statements(scenario, first, pairs, differences, found)),
-        complete=first.status != "stopped",
+        stopped=first.status == "stopped",
         levels=found,
     )
 

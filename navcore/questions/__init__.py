@@ -16,5 +16,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.pareto:ParetoQuestion",
     "navcore.questions.adapt:AdaptQuestion",
     "navcore.questions.design:DesignQuestion",
+    "navcore.questions.verify:VerifyQuestion",
+    "navcore.questions.why:WhyQuestion",
 )
 """Questions by name, in the order in which the command and the page offer them."""

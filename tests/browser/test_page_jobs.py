@@ -9,10 +9,10 @@ import pytest
 
 from navcore.engine.measures import measure
 from navcore.quantities import QUANTITIES
+from navcore.questions.verify import VerifyQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
 from schuler_bench.views.study import view as study
 from schuler_bench.views.sweep.view import METRIC
@@ -74,7 +74,7 @@ def test_a_verification_is_stopped(short: Bench, monkeypatch: pytest.MonkeyPatch
     assert endless.begun.wait(60.0)
     short.page.locator(".mantine-Progress-root:visible").first.wait_for()
     stop.click()
-    short.page.get_by_text(STOPPED).wait_for()
+    short.page.get_by_text(VerifyQuestion.stopped).wait_for()
     assert verifier.wait_idle(60.0)
     # a slider is answered meanwhile, and ends what has become useless
     verify.click()
@@ -172,8 +172,8 @@ def test_a_search_is_stopped(adaptive: Bench, monkeypatch: pytest.MonkeyPatch) -
 
 def test_why_is_said_once_the_run_stands_still(fresh: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh.press("network.xi")
-    explainer, page = fresh.session.searches.explainer, fresh.page
-    assert fresh.session.run not in (explainer.asked, explainer.under_way), "nobody looks at it"
+    explainer, page = fresh.session.searches.asking["why"], fresh.page
+    assert explainer.asked is None and explainer.under_way is None, "nobody looks at it"
     fresh.tab("Metrics")
     why = page.locator("#sb-why")
     page.wait_for_function("look.why", arg="1")

@@ -11,9 +11,10 @@ from navcore.design.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import PHI_E, PHI_N
+from navcore.questions.why import WhyQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.why import Explainer
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.views.metrics.view import cause_text, why_html
 
 DAY = {"run": {"duration_h": 30.0, "step_s": 10.0, "output_step_s": 60.0}}
@@ -136,9 +137,9 @@ def test_the_line_is_marked_while_it_is_of_another_run() -> None:
         run_of(imu={"gyro_bias_dph": [0.0, 0.01, 0.0]}),
         run_of(imu={"gyro_bias_dph": [0.0, 0.02, 0.0]}),
     )
-    explainer = Explainer(lambda: None)
+    explainer = Asker(lambda: None, WhyQuestion)
     assert 'data-fits="0"' in why_html(explainer, run)
-    explainer.result, explainer.asked = why(run), run
+    explainer.result, explainer.asked = why(run), WhyQuestion.of(run)
     html = why_html(explainer, run)
     assert 'data-fits="1"' in html and "sb-old" not in html and "from gyro bias" in html
     summary = html.partition("</summary>")[0]

@@ -11,12 +11,11 @@ from navcore.engine.simulation import simulate
 from navcore.engine.verification import Verification, verify
 from navcore.mechanization.recorder import NAMES
 from navcore.scenario.file import load
-from schuler_bench.jobs.verifier import Verified
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import STATES, after
 from schuler_bench.plots.uplot import stack_heights
 from schuler_bench.session.display import Display
-from schuler_bench.session.shown import Shown
+from schuler_bench.session.shown import Shown, Verified
 from schuler_bench.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
 from schuler_bench.views.errors.view import error_curves, legend_html, moving
 from schuler_bench.views.learn.lessons import lessons

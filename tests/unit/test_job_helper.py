@@ -19,6 +19,8 @@ from navcore.questions.adapt import AdaptQuestion
 from navcore.questions.budget import BudgetQuestion
 from navcore.questions.pareto import ParetoQuestion
 from navcore.questions.tune import TuneQuestion
+from navcore.questions.verify import VerifyQuestion
+from navcore.questions.why import WhyQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs import helper
@@ -27,8 +29,6 @@ from schuler_bench.jobs.envelopes import Envelopes
 from schuler_bench.jobs.long_runs import run_for
 from schuler_bench.jobs.scheduler import Lane, Scheduler
 from schuler_bench.jobs.search import Search
-from schuler_bench.jobs.verifier import Verifier
-from schuler_bench.jobs.why import Explainer
 from schuler_bench.jobs.worker import Watch
 from tests.waiting import until
 
@@ -178,11 +178,11 @@ def begun(name: str) -> Search[Any, Any]:
         search = Asker(lambda: None, BudgetQuestion)
         search.begin(BudgetQuestion(scenario=SCENARIO))
     elif name == "verification":
-        search = Verifier(lambda: None)
-        search.begin(SCENARIO)
+        search = Asker(lambda: None, VerifyQuestion)
+        search.begin(VerifyQuestion(scenario=SCENARIO))
     elif name == "why":
-        search = Explainer(lambda: None, still_s=0.0)
-        search.follow(simulate(SCENARIO))
+        search = Asker(lambda: None, WhyQuestion, still_s=0.0)
+        search.follow(WhyQuestion.of(simulate(SCENARIO)))
     elif name == "table":
         search = Asker(lambda: None, AdaptQuestion)
         search.begin(

@@ -9,16 +9,18 @@ import pytest
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.questions.adapt import AdaptQuestion
+from navcore.questions.budget import BudgetQuestion
 from navcore.questions.design import DesignQuestion
 from navcore.questions.pareto import ParetoQuestion
 from navcore.questions.tune import TuneQuestion
+from navcore.questions.verify import VerifyQuestion
+from navcore.questions.why import WhyQuestion
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.asking import CHANGED, Asker
 from schuler_bench.jobs.scheduler import Lane, Load
 from schuler_bench.jobs.searches import Searches
-from schuler_bench.jobs.verifier import CHANGED, STOPPED, Verifier
-from schuler_bench.jobs.why import Explainer
+from schuler_bench.session.shown import verified_beside
 from tests.waiting import until
 
 
@@ -47,7 +49,7 @@ def finder() -> Finder:
     return Finder()
 
 
-def with_finder(explainer: Explainer, finder: Finder) -> Explainer:
+def with_finder(explainer: Asker, finder: Finder) -> Asker:
     explainer._compute = finder
     explainer._worker._load = lambda _: Load(Lane.SPARE)
     explainer._worker._still_s = 0.1
@@ -56,9 +58,9 @@ def with_finder(explainer: Explainer, finder: Finder) -> Explainer:
 
 
 @pytest.fixture
-def explained(finder: Finder) -> Iterator[tuple[Explainer, list[Any]]]:
+def explained(finder: Finder) -> Iterator[tuple[Asker, list[Any]]]:
     told: list[Any] = []
-    explainer = Explainer(lambda: told.append((explainer.fraction, explainer.result)))
+    explainer = Asker(lambda: told.append((explainer.fraction, explainer.result)), WhyQuestion, "explainer")
     yield with_finder(explainer, finder), told
     explainer.cancel()
     explainer.stop()
@@ -103,32 +105,37 @@ def test_a_fault_is_told_and_forgotten_with_the_next_run(finder: Finder, explain
     assert explainer.wait_idle(5.0) and explainer.asked == "run"
 
 
+def of_the_ship() -> Any:
+    """Stand-in for a run."""
+    return SimpleNamespace(scenario=SHIP)
+
+
 def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
     searches = Searches("test")
-    with_finder(searches.explainer, finder)
-    run: Any = object()
+    with_finder(searches.asking["why"], finder)
+    run: Any = SimpleNamespace(scenario=SHIP)
     searches.explain(run)
-    assert not searches.explainer._worker.busy
+    assert not searches.asking["why"]._worker.busy
     told: list[int] = []
     watch = lambda: told.append(1)  # noqa: E731
     searches.watch(watch)
-    assert not searches.explainer._worker.busy, "nobody looks at it"
+    assert not searches.asking["why"]._worker.busy, "nobody looks at it"
     searches.explain(run)
-    assert searches.explainer.wait_idle(5.0)
-    assert told and searches.explainer.asked is run
+    assert searches.asking["why"].wait_idle(5.0)
+    assert told and searches.asking["why"].asked == WhyQuestion.of(run)
     finder.quick = False
     finder.begun.clear()
-    searches.explain(object())  # pyright: ignore[reportArgumentType]
+    searches.explain(of_the_ship())
     assert finder.begun.wait(5.0)
     searches.unwatch(watch)
-    assert searches.explainer.wait_idle(5.0)
+    assert searches.asking["why"].wait_idle(5.0)
     searches.stop()
 
 
 def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None:
     searches = Searches("test")
-    with_finder(searches.explainer, finder)
-    run: Any = object()
+    with_finder(searches.asking["why"], finder)
+    run: Any = SimpleNamespace(scenario=SHIP)
     searches.watch(lambda: None)
     finder.quick = False
     searches.explain(run)
@@ -136,12 +143,14 @@ def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None
     finder.begun.clear()
     searches.explain(run)
     finder.quick = True
-    assert searches.explainer.wait_idle(5.0)
+    assert searches.asking["why"].wait_idle(5.0)
     searches.explain(run)
-    assert searches.explainer.wait_idle(5.0) and finder.asked == [run]
+    assert searches.asking["why"].wait_idle(5.0) and finder.asked == [WhyQuestion.of(run)]
     searches.changed()
-    searches.explain(another := object())  # pyright: ignore[reportArgumentType]
-    assert searches.explainer.wait_idle(5.0) and finder.asked == [run, another]
+    searches.explain(another := of_the_ship())
+    assert searches.asking["why"].wait_idle(5.0) and finder.asked == [
+        WhyQuestion.of(one) for one in (run, another)
+    ]
     searches.stop()
 
 
@@ -267,14 +276,41 @@ def test_a_search_that_is_halted_twice_or_before_its_turn_leaves_nothing() -> No
     fronts.stop()
 
 
+def test_what_is_asked_again_while_its_stopped_work_ends_is_answered() -> None:
+    """Verify, Stop, Verify at once: the end of the first counted as that of the second, which was dropped."""
+    begun, go_on, asked = threading.Event(), threading.Event(), []
+
+    def compute(question: Any, progress: Any, cancelled: Any) -> Any:
+        asked.append(question)
+        if len(asked) == 1:
+            begun.set()
+            go_on.wait(10.0)
+        return SimpleNamespace(complete=len(asked) > 1, number=len(asked))
+
+    search = Asker(lambda: None, BudgetQuestion)
+    search._compute = compute
+    search._worker._load = lambda _: Load(Lane.SPARE)
+    question = BudgetQuestion(scenario=SHIP)
+    search.begin(question)
+    assert begun.wait(5.0)
+    search.cancel()
+    search.begin(question)
+    go_on.set()
+    assert search.wait_idle(10.0)
+    assert len(asked) == 2 and search.result is not None and search.result.number == 2
+    assert search.fraction is None and search.words == ()
+    search.stop()
+
+
 # ---------------------------------------------------------------- verification
 
 
 DURATION = ("run", "duration_h")
 
 
-def verify(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
+def verify(question: Any, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
     """Stand-in: 3 h cannot be verified, 4 h is a fault of ours, 5 h lasts until it is stopped."""
+    scenario = question.scenario
     hours = scenario.run.duration_h
     if hours == 3.0:
         raise InputError(Fault("", "run.fidelity", "channel", "leaves the Earth out"))
@@ -292,73 +328,78 @@ def hours(value: float) -> Scenario:
     return edits.with_value(Scenario(), DURATION, value)
 
 
+def asked_of(value: float) -> VerifyQuestion:
+    return VerifyQuestion(scenario=hours(value))
+
+
 @pytest.fixture
-def made() -> Iterator[tuple[Verifier, list[float | None]]]:
+def made() -> Iterator[tuple[Asker, list[float | None]]]:
     told: list[float | None] = []
-    verifier = Verifier(lambda: told.append(verifier.fraction), verify)
+    verifier = Asker(lambda: told.append(verifier.fraction), VerifyQuestion)
+    verifier._compute = verify
     yield verifier, told
     verifier.cancel()
     verifier.stop()
 
 
-def under_way(verifier: Verifier, told: list[float | None]) -> None:
-    verifier.begin(hours(5.0))
+def under_way(verifier: Asker, told: list[float | None]) -> None:
+    verifier.begin(asked_of(5.0))
     until(lambda: 0.5 in told)
 
 
-def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Verifier, list]) -> None:
+def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Asker, list]) -> None:
     verifier, told = made
-    verifier.begin(hours(1.0))
+    verifier.begin(asked_of(1.0))
     assert verifier.wait_idle(5.0)
     assert told == [0.0, None]
-    beside = verifier.beside(hours(1.0))
+    beside = verified_beside(verifier, hours(1.0))
     assert beside is not None and not beside.old
-    changed = verifier.beside(hours(2.0))
+    changed = verified_beside(verifier, hours(2.0))
     assert changed is not None and changed.old
     other, _ = edits.with_method(edits.with_value(Scenario(), ("reference", "kind"), "log"), None)
-    assert verifier.beside(other) is None  # not the same methods
+    assert verified_beside(verifier, other) is None  # not the same methods
     verifier.forget()
-    assert verifier.beside(hours(1.0)) is None
+    assert verified_beside(verifier, hours(1.0)) is None
 
 
-def test_progress_is_told_and_a_stop_keeps_the_earlier_result(made: tuple[Verifier, list]) -> None:
+def test_progress_is_told_and_a_stop_keeps_the_earlier_result(made: tuple[Asker, list]) -> None:
     verifier, told = made
-    verifier.begin(hours(1.0))
+    verifier.begin(asked_of(1.0))
     assert verifier.wait_idle(5.0)
     kept = verifier.result
     under_way(verifier, told)
     verifier.cancel()
     assert verifier.wait_idle(5.0)
-    assert (verifier.fraction, verifier.words) == (None, (STOPPED,))
+    assert (verifier.fraction, verifier.words) == (None, (VerifyQuestion.stopped,))
     assert verifier.result is kept
 
 
-def test_a_change_of_the_scenario_stops_it_and_says_so(made: tuple[Verifier, list]) -> None:
+def test_a_change_of_the_scenario_stops_it_and_says_so(made: tuple[Asker, list]) -> None:
     verifier, told = made
     under_way(verifier, told)
-    verifier.follow(hours(5.0))
+    verifier.leave(hours(5.0))
     assert verifier.fraction is not None
-    verifier.follow(hours(2.0))
+    verifier.leave(hours(2.0))
     assert verifier.wait_idle(5.0)
     assert verifier.words == (CHANGED,)
-    verifier.follow(hours(2.5))
+    verifier.leave(hours(2.5))
     assert verifier.words == ()
     assert verifier.result is None
 
 
 @pytest.mark.parametrize(("length", "words"), [(3.0, "leaves the Earth out"), (4.0, "ZeroDivisionError")])
-def test_what_is_wrong_is_said(made: tuple[Verifier, list], length: float, words: str) -> None:
+def test_what_is_wrong_is_said(made: tuple[Asker, list], length: float, words: str) -> None:
     verifier, _ = made
-    verifier.begin(hours(length))
+    verifier.begin(asked_of(length))
     assert verifier.wait_idle(5.0)
     assert words in verifier.words[0]
     assert verifier.result is None
 
 
-def test_a_second_start_takes_the_place_of_the_first(made: tuple[Verifier, list]) -> None:
+def test_a_second_start_takes_the_place_of_the_first(made: tuple[Asker, list]) -> None:
     verifier, told = made
     under_way(verifier, told)
-    verifier.begin(hours(1.0))
+    verifier.begin(asked_of(1.0))
     assert verifier.wait_idle(5.0)
-    assert verifier.asked == hours(1.0)
+    assert verifier.asked == asked_of(1.0)
     assert verifier.words == ()

@@ -10,6 +10,7 @@ import pytest
 
 from navcore.engine import simulation
 from navcore.foundation.errors import Fault, InputError
+from navcore.questions.verify import VerifyQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
@@ -17,6 +18,7 @@ from schuler_bench.session import sessions
 from schuler_bench.session.history import first_editable
 from schuler_bench.session.session import Session, runs_on_demand
 from schuler_bench.session.sessions import Sessions, first_scenario
+from schuler_bench.session.shown import verified_beside
 
 PRESET = load("zha-fast")
 
@@ -148,14 +150,16 @@ def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(
 ) -> None:
     verifier = session.verifier
     monkeypatch.setattr(verifier, "result", answer(PRESET))
-    monkeypatch.setattr(verifier, "asked", PRESET)
-    assert verifier.beside(PRESET) is not None
+    monkeypatch.setattr(verifier, "asked", VerifyQuestion(scenario=PRESET))
+    assert verified_beside(verifier, PRESET) is not None
     change(session, page, "duration_h", 2.0)
-    assert verifier.beside(session.scenario).old
+    assert verified_beside(verifier, session.scenario).old
     change(session, page, "duration_h", 2.5, origin="another")
-    assert verifier.beside(session.scenario) is None
+    assert verified_beside(verifier, session.scenario) is None
+    told = lambda: None  # noqa: E731
+    session.searches.watch(told)
     verifier.fraction = 0.5
-    session.detach(page)
+    session.searches.unwatch(told)
     assert verifier.fraction is None
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
-from schuler_bench.jobs.verifier import Verified
 from schuler_bench.plots import style
 from schuler_bench.plots.envelope import Envelope
 from schuler_bench.plots.legend import COMMAND, entry
@@ -17,7 +16,7 @@ from schuler_bench.plots.table import cell
 from schuler_bench.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure, stack_heights
 from schuler_bench.session.display import Display
 from schuler_bench.session.requirements import error_limits
-from schuler_bench.session.shown import Shown
+from schuler_bench.session.shown import Shown, Verified
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.stack import Stack, room_px

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.quantities import HEADING, POSITION, TILT, Kind
-from schuler_bench.jobs.verifier import Verified
+from navcore.questions.why import WhyQuestion
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import severity, warnings_for
 from schuler_bench.plots.table import parts
 from schuler_bench.plots.units import duration
-from schuler_bench.session.shown import Shown, window_of
+from schuler_bench.session.shown import Shown, Verified, window_of
 from schuler_bench.shell import notices
 from schuler_bench.shell.control import Widget
 from schuler_bench.shell.layout import TOOLS
@@ -24,25 +24,25 @@ from schuler_bench.views.metrics.table import method_px, metrics_html, metrics_r
 if TYPE_CHECKING:
     from navcore.design.dominance import Cause, Why
     from navcore.engine.run import Run
-    from schuler_bench.jobs.why import Explainer
+    from schuler_bench.jobs.asking import Asker
 
 
 _WAITS = Text("What dominates this result is computed once the controls rest.")
 
 
-def why_html(explainer: Explainer, run: Run, selected: int = 0) -> str:
+def why_html(explainer: Asker, run: Run, selected: int = 0) -> str:
     """A line for each method; a mark while it is of an earlier run. Its panel folds them (static/room.js).
 
     Parameters
     ----------
-    explainer : Explainer
+    explainer : Asker
         Of the session.
     run : Run
         That is shown.
     selected : int
         Method whose line stands for all while they are folded.
     """
-    result, fits = explainer.result, explainer.asked is run
+    result, fits = explainer.result, explainer.asked == WhyQuestion.of(run)
     if fits and result is not None:
         name, causes = result.methods[min(selected, len(result.methods) - 1)]
         return _box(_lines(result, run), "", Text("{name}: {told}", name=name, told=_told(causes, result)))
@@ -229,7 +229,7 @@ class MetricsView(PictureView[tuple[str, str]]):
         run, session = self.session.run, self.session
         if run is None:
             return
-        html = why_html(session.searches.explainer, run, session.selected)
+        html = why_html(session.searches.asking["why"], run, session.selected)
         if self._why.content != html:
             self._why.content = html
 

@@ -1,8 +1,9 @@
 """In the top bar: verify the scenario with the full strapdown, progress, stop, and what came out."""
 
 from navcore.foundation.text import Text
+from navcore.questions.verify import VerifyQuestion
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.verifier import Verifier
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.shell import notices
 from schuler_bench.shell.header import WARNINGS
 from schuler_bench.shell.searching import reveal, show_html
@@ -25,6 +26,7 @@ class VerificationView(View):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
+        self._shown = frame.session.verifier.result
         frame.commands.register("verify", lambda _: self._verify(), Text("Verify with the strapdown"))
 
     def build(self, tab: Tab) -> None:
@@ -50,7 +52,12 @@ class VerificationView(View):
     def _verify(self) -> None:
         with self.session.lock:
             scenario = self.session.scenario
-        self.session.verifier.begin(scenario)
+        self.session.verifier.begin(VerifyQuestion(scenario=scenario))
+
+    def take_new(self) -> bool:
+        """Whether a verification has just ended."""
+        before, self._shown = self._shown, self.session.verifier.result
+        return before is not self._shown
 
     def follow_jobs(self) -> None:
         """Show how far a verification is, or what the last one gave, and of which scenario."""
@@ -63,7 +70,7 @@ class VerificationView(View):
         show_html(self._verdict, _html(verifier, self.session.scenario))
 
 
-def _html(verifier: Verifier, scenario: Scenario) -> str:
+def _html(verifier: Asker, scenario: Scenario) -> str:
     if verifier.fraction is not None:
         progress = notices.note(
             [Text("Verifying: the full strapdown and the linear model on its noise.")], "info"
@@ -74,7 +81,7 @@ def _html(verifier: Verifier, scenario: Scenario) -> str:
     result = verifier.result
     if result is None:
         return ""
-    if verifier.asked != scenario:
+    if verifier.asked is None or verifier.asked.scenario != scenario:
         return notices.note([Text("The verification is of an earlier scenario: verify again.")], "warning")
     trusted = notices.note([Text("Verified. {verdict}", verdict=verdict(result)), _WHERE], "info")
     against = (
