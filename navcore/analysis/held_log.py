@@ -9,12 +9,14 @@ map over one period of the log is linear, so its eigenvalues decide.
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from navcore.analysis.loop import closed_loop_poles
 from navcore.analysis.response import matrix_exponential
 from navcore.analysis.whole_matrix import (
+    AT_REST,
     DV_E,
     DV_N,
     LATITUDE,
@@ -22,9 +24,11 @@ from navcore.analysis.whole_matrix import (
     PHI_N,
     PHI_U,
     STATES,
+    Course,
     feedback_gains,
     free_matrix,
     inputs_of_law,
+    seen_differences,
     up_rate,
 )
 from navcore.analysis.whole_system import duration
@@ -38,6 +42,8 @@ from navcore.networks.discrete import discretise
 _FAST = 0.3
 """A growing mode faster than this times omega_s is not the 24 h mode: it comes from the hold."""
 _STANDS = 1e-7
+_FASTER = 2.0
+"""Growth along a motion counts from so many times the rate at which the latitude changes."""
 _SEARCH = 20
 _CHANNELS = np.zeros((STATES, STATES))
 """Ones where a level channel acts on itself."""
@@ -87,7 +93,7 @@ def held_log(
     coupled: bool = True,
     azimuth: AzimuthChannel | None = None,
 ) -> HeldLog:
-    """Check the sampled law of a method at rest.
+    """Check the sampled law of a method of a ship at rest.
 
     Parameters
     ----------
@@ -122,6 +128,80 @@ def held_log(
     return HeldLog(calls * law_step_s, law_step_s, stable, growth, overall, up_to, warnings)
 
 
+class Stretch(NamedTuple):
+    """Part of a motion.
+
+    Attributes
+    ----------
+    lat : float
+        Mean latitude, rad.
+    v_e, v_n : float
+        Mean velocity, m/s.
+    duration_s : float
+        s.
+    """
+
+    lat: float
+    v_e: float
+    v_n: float
+    duration_s: float
+
+
+@lru_cache(maxsize=256)
+def growth_along(
+    network: LinearNetwork,
+    log_period_s: float,
+    law_step_s: float,
+    stretches: tuple[Stretch, ...],
+    earth: Earth = SPHERE,
+    azimuth: AzimuthChannel | None = None,
+    turned: bool = False,
+) -> float:
+    """Growth of the whole system as its law is sampled along a motion, 1/s; nan where it cannot run.
+
+    It is that of the map over the whole motion, as if the motion were repeated for ever. What grows no faster
+    than twice the rate at which the latitude changes is a passing distortion of the meridians, and not judged
+    (theory.md 10).
+
+    Parameters
+    ----------
+    network, log_period_s, law_step_s, earth, azimuth
+        As of `held_log`.
+    stretches : tuple of Stretch
+        The motion; within each of them velocity and latitude count as constant.
+    turned : bool
+        The law reads a log in the ship's axes, which the computed heading turns.
+    """
+    calls = max(1, round(log_period_s / law_step_s))
+    period_s, omega_s = calls * law_step_s, network.omega_s
+    whole, grown, total_s = None, 0.0, sum(one.duration_s for one in stretches)
+    try:
+        maps = [
+            period_map(
+                network, law_step_s, calls, one.lat, earth, True, azimuth, Course(one.v_e, one.v_n, turned)
+            )
+            for one in stretches
+        ]
+    except InputError:
+        return math.nan
+    if len(maps) == 1:
+        growth = growth_of_map(maps[0], period_s, omega_s)
+    else:
+        for one, period in zip(stretches, maps, strict=True):
+            count = max(1, round(one.duration_s / period_s))
+            rate = max(0.0, growth_of_map(period, period_s, omega_s))  # taken out, or the power overflows
+            power = np.linalg.matrix_power(period * math.exp(-rate * period_s), count)
+            grown += rate * count * period_s
+            whole = power if whole is None else power @ whole
+        assert whole is not None
+        growth = growth_of_map(whole, total_s, omega_s) + grown / total_s
+    changes = sum(
+        abs(one.v_n) / earth.radii(one.lat)[0] * max(1.0, abs(math.tan(one.lat))) * one.duration_s
+        for one in stretches
+    )
+    return growth if growth <= 0.0 or growth > _FASTER * changes / total_s else 0.0
+
+
 def period_map(
     network: LinearNetwork,
     law_step_s: float,
@@ -130,13 +210,15 @@ def period_map(
     earth: Earth = SPHERE,
     coupled: bool = True,
     azimuth: AzimuthChannel | None = None,
+    course: Course = AT_REST,
 ) -> np.ndarray:
     """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
 
     The state holds the six errors (normalised as in `whole_system.free_matrix`), the law's states of both
     channels and, when the log is slower than the law, the two held differences V_r - V_c. Uncoupled, it is
     that of the level channels, without heading and latitude. With an azimuth network its states follow, and
-    the held difference omega_Ur - omega_U.
+    the held difference omega_Ur - omega_U; where the computed heading turns the log, also the error that this
+    gives its north velocity, held, and that of the latitude L_r that follows from it.
 
     Raises
     ------
@@ -145,9 +227,10 @@ def period_map(
     """
     dA, B, C, D, E, k1 = _sampled_law(network, law_step_s)
     n, omega_s = len(B), network.omega_s
-    plant, forced = _held_plant(lat, omega_s, law_step_s, earth, coupled)
+    plant, forced = _held_plant(lat, omega_s, law_step_s, earth, coupled, course)
+    seen = seen_differences(lat, omega_s, earth, course)
     held = STATES + 2 * n
-    m = 0 if azimuth is None else 1 if isinstance(azimuth, AzimuthGains) else azimuth.order + 1
+    m = 0 if azimuth is None else 1 if isinstance(azimuth, AzimuthGains) else azimuth.order + 3
     step = np.zeros((held + 2 + m, held + 2 + m))
     step[:STATES, :STATES] = plant
     for channel in range(2):
@@ -157,19 +240,26 @@ def period_map(
         step[z, z] = np.eye(n) + dA
         step[z, held + channel] = B
         step[held + channel, held + channel] = 1.0
-    # a fresh epoch: the difference becomes -dV before the law is called
+    # a fresh epoch: the difference becomes that of now before the law is called
     fresh = np.eye(held + 2 + m)
-    fresh[held : held + 2, held : held + 2] = 0.0
-    fresh[held, 0] = fresh[held + 1, 1] = -1.0
+    fresh[held : held + 2] = 0.0
+    fresh[held : held + 2, :STATES] = -seen
     if isinstance(azimuth, AzimuthGains):
         pull = earth.gravity(lat, 0.0) / (EARTH_RATE * math.cos(lat))
         _turn_north(step, forced, azimuth, omega_s, law_step_s, pull)
     elif azimuth is not None:
-        y, z, u = discretise(azimuth, law_step_s), slice(held + 2, held + 1 + m), held + 1 + m
+        y, u = discretise(azimuth, law_step_s), held + 2 + azimuth.order
+        z, turned, lat_r = slice(held + 2, u), u + 1, u + 2
         step[:STATES, z] = np.outer(forced[:, 4], -y.C)
         step[:STATES, u] = forced[:, 4] * (1.0 - y.D)
         step[z, z], step[z, u], step[u, u] = np.eye(y.order) + y.dA, y.B, 1.0
-        fresh[u, :STATES], fresh[u, u] = -up_rate(lat, omega_s, earth), 0.0
+        step[turned, turned] = step[lat_r, lat_r] = 1.0
+        step[lat_r, turned] = omega_s * law_step_s
+        up = up_rate(lat, omega_s, earth, course=course)
+        fresh[[u, turned]] = 0.0
+        fresh[turned, PHI_U] = inputs_of_law(lat, omega_s, earth)[PHI_E, 1] * seen[DV_N, PHI_U]
+        fresh[u, :STATES], fresh[u, lat_r] = -up, up[LATITUDE]
+        fresh[u, PHI_U] -= seen[DV_E, PHI_U] * up[DV_E]
     period = np.linalg.matrix_power(step, calls) @ fresh
     return period if coupled else np.delete(np.delete(period, _ALONE, 0), _ALONE, 1)
 
@@ -202,8 +292,25 @@ def growth_of_map(period: np.ndarray, period_s: float, omega_s: float) -> float:
     omega_s : float
         Schuler frequency, rad/s.
     """
-    growth = math.log(max(float(np.max(np.abs(np.linalg.eigvals(period)))), 1e-300)) / period_s
+    growth = math.log(max(float(np.max(np.abs(np.linalg.eigvals(_connected(period))))), 1e-300)) / period_s
     return growth if abs(growth) > _STANDS * omega_s else 0.0
+
+
+def _connected(period: np.ndarray) -> np.ndarray:
+    """Leave out states that the errors do not drive, or that do not act on them: integrators that idle."""
+    linked = np.abs(period) > 0.0
+    reached, acting = (_reachable(matrix) for matrix in (linked, linked.T))
+    kept = np.flatnonzero(reached & acting)
+    return period[np.ix_(kept, kept)]
+
+
+def _reachable(linked: np.ndarray) -> np.ndarray:
+    """Mark the states that the first ones, the errors of the level channels, reach; shape (n,)."""
+    found = np.zeros(len(linked), dtype=bool)
+    found[:2] = True
+    for _ in range(len(linked)):
+        found = found | (linked[:, found].any(axis=1))
+    return found
 
 
 def _sampled_law(
@@ -220,11 +327,11 @@ def _sampled_law(
 
 
 def _held_plant(
-    lat: float, omega_s: float, step_s: float, earth: Earth, coupled: bool
+    lat: float, omega_s: float, step_s: float, earth: Earth, coupled: bool, course: Course
 ) -> tuple[np.ndarray, np.ndarray]:
     """Transition of the six states over a step, and that of the five inputs held over it."""
     both = np.zeros((STATES + 5, STATES + 5))
-    both[:STATES, :STATES] = free_matrix(lat, omega_s, earth) * (1.0 if coupled else _CHANNELS)
+    both[:STATES, :STATES] = free_matrix(lat, omega_s, earth, course=course) * (1.0 if coupled else _CHANNELS)
     both[:STATES, STATES:-1] = inputs_of_law(lat, omega_s, earth)
     both[PHI_U, -1] = 1.0
     moved = matrix_exponential(both * (omega_s * step_s))

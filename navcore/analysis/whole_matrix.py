@@ -173,10 +173,7 @@ def system_matrix(
     act = inputs_of_law(lat, network.omega_s, earth, height)
     compass = isinstance(azimuth, AzimuthGains)
     m = 0 if azimuth is None else 1 if compass else azimuth.order + course.turned
-    seen = np.eye(STATES)[[DV_E, DV_N]]  # V_c - V_r
-    v_e, v_n = _normalised(course, lat, network.omega_s, earth, height)
-    if course.turned:
-        seen[:, PHI_U] = -v_n, v_e
+    seen = seen_differences(lat, network.omega_s, earth, course, height)
     f = np.zeros((STATES + 2 * n + m, STATES + 2 * n + m))
     f[:STATES, :STATES] = free_matrix(lat, network.omega_s, earth, height, course)
     for channel in (DV_E,) if compass else (DV_E, DV_N):
@@ -205,6 +202,17 @@ def system_matrix(
         f[z] = rate * np.outer(y.B, up)
         f[z, z] += rate * y.A
     return f
+
+
+def seen_differences(
+    lat: float, omega_s: float, earth: Earth = SPHERE, course: Course = AT_REST, height: float = 0.0
+) -> np.ndarray:
+    """Errors of V_c - V_r, E and N, by the six states, shape (2, 6); a log that is turned has one too."""
+    seen = np.eye(STATES)[[DV_E, DV_N]]
+    if course.turned:
+        v_e, v_n = _normalised(course, lat, omega_s, earth, height)
+        seen[:, PHI_U] = -v_n, v_e
+    return seen
 
 
 def up_rate(

@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from navcore.analysis.loop import closed_loop_poles
-from navcore.analysis.whole_matrix import AT_REST, Course, system_matrix
+from navcore.analysis.whole_matrix import system_matrix
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
@@ -24,8 +24,6 @@ EARTH_MODE, SCHULER_MODE, NETWORK_MODE = "24 h", "Schuler-Foucault", "network"
 _DAY = 86400.0
 _STANDS = 1e-7
 """Growth over omega_s that counts as none: rounding moves a mode of two equal eigenvalues by so much."""
-_MORE, _FASTER = 1.5, 2.0
-"""Growth under way that counts: so many times that at rest, and the rate at which the latitude changes."""
 
 
 @dataclass(frozen=True)
@@ -139,33 +137,6 @@ def whole_system(
         h_slope=network.h_slope,
         warnings=tuple(_warnings(growing, network, lat)),
     )
-
-
-@lru_cache(maxsize=256)
-def growth_under_way(
-    network: LinearNetwork,
-    lat: float,
-    course: Course,
-    earth: Earth = SPHERE,
-    height: float = 0.0,
-    azimuth: AzimuthChannel | None = None,
-) -> float:
-    """Growth rate that a velocity gives the whole system, 1/s; 0 where it grows as at rest, or hardly.
-
-    The velocity and the latitude are taken to stay: what grows more slowly than the latitude changes is
-    not judged (theory.md 10).
-
-    Parameters
-    ----------
-    network, lat, earth, height, azimuth
-        As of `whole_system`.
-    course : Course
-        Velocity, and whether the log is turned by the computed heading.
-    """
-    matrices = (system_matrix(network, lat, earth, height, azimuth, c) for c in (course, AT_REST))
-    growth, at_rest = (float(np.max(np.linalg.eigvals(f).real)) * network.omega_s for f in matrices)
-    changes = math.hypot(course.v_e, course.v_n) / earth.radii(lat)[0] * max(1.0, abs(math.tan(lat)))
-    return growth if growth > max(_MORE * at_rest, _FASTER * changes, _STANDS * network.omega_s) else 0.0
 
 
 def growth_over_latitude(

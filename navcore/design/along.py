@@ -77,7 +77,7 @@ class Along:
         if len(self.given) < 2:
             return None
         with np.errstate(over="ignore", invalid="ignore"):
-            return sum(self.given.values()) ** 2
+            return np.sum(list(self.given.values()), axis=0) ** 2
 
     def scaled(self, sizes: Mapping[str, float]) -> np.ndarray:
         """Mean square of all sources together when some have another size.

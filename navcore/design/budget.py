@@ -124,7 +124,7 @@ def _of_filter(scenario: Scenario, method: Method, own: Series, untold: bool) ->
     note = Text(
         "its own covariance, and what it is not told of: {sources}", sources=", ".join(sources) or "nothing"
     )
-    given = sum(errors.values()) ** 2 if len(errors) > 1 else None
+    given = np.sum(list(errors.values()), axis=0) ** 2 if len(errors) > 1 else None
     return Series(own.t_s, {"told": own.total, **sources}, total, given), note
 
 

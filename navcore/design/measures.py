@@ -19,7 +19,7 @@ from navcore.design.sampled import SampledLevel, timing_of
 from navcore.design.seeds import alone, no_covariance, seed_variance
 from navcore.design.ship import Ship
 from navcore.design.steady import constant_parts, instability, loops_of, random_parts
-from navcore.engine.drivers.common import network_of
+from navcore.engine.drivers.common import growth_under_way, network_of
 from navcore.engine.ensemble import SEARCHED
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
@@ -75,22 +75,21 @@ class Setting:
 
     @cached_property
     def growth_per_s(self) -> float:
-        """Fastest growth of the whole system as the law is sampled, 1/s; nan where it cannot run."""
+        """Growth of the whole system along the motion as the law is sampled, 1/s; nan where it cannot run."""
         scenario, timing = self.ship.scenario, timing_of(self.ship.scenario)
         if self.method.kind.covering == "filter":
             return math.nan if self._filter is None else float(np.max(self._filter.poles.real))
         if not self.method.kind.uses_network:
             return 0.0
         period_s = timing.step_s * (timing.hold if self.method.kind.referenced else 1)
-        place = scenario.site.lat_deg * DEG, scenario.earth, scenario.run.fidelity != "channel"
-        kind = self.method.kind
-        return held_log(
-            kind.acting(self.network),
-            period_s,
-            timing.step_s,
-            *place,
-            azimuth=kind.azimuth(self.method, self.network.omega_s),
-        ).growth_per_s
+        kind, log = self.method.kind, scenario.reference
+        acting, azimuth = kind.acting(self.network), kind.azimuth(self.method, self.network.omega_s)
+        times_s = period_s, timing.step_s
+        if scenario.run.fidelity == "channel":
+            place = scenario.site.lat_deg * DEG, scenario.earth
+            return held_log(acting, *times_s, *place, coupled=False, azimuth=azimuth).growth_per_s
+        turned = kind.referenced and log.frame == "body"
+        return growth_under_way(scenario, acting, self.ship.course.truth, times_s, azimuth, turned)
 
     @property
     def _filter(self) -> Loop | None:

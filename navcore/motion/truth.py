@@ -11,6 +11,11 @@ LAT, LON, HEIGHT, VE, VN, VU, AE, AN, AU, PITCH, ROLL, HEADING, PITCH_RATE, ROLL
 )
 COLUMNS = 15
 
+_STRETCHES, _STRETCH_S = 12, 7200.0
+"""Parts at most that a motion is divided into for the verdict on its stability, and their least length, s."""
+_ALIKE = np.array([2e-3, 0.1, 0.1])
+"""Difference of mean latitude (rad) and velocity (m/s) below which two parts are alike."""
+
 
 @dataclass(frozen=True)
 class Site:
@@ -39,9 +44,25 @@ class Truth:
     _last: list[np.ndarray] = field(default_factory=list, init=False, repr=False)
 
     @cached_property
-    def mean_velocity(self) -> tuple[float, float]:
-        """Mean east and north velocity, m/s."""
-        return float(np.mean(self.column(VE))), float(np.mean(self.column(VN)))
+    def stretches(self) -> tuple[tuple[float, float, float, float], ...]:
+        """Latitude (rad), east and north velocity (m/s), on average, and duration (s) of parts of the motion.
+
+        Parts that follow each other and are alike are one; one for a vehicle at rest or on a straight course.
+        """
+        if self.constant:
+            row = self.values[0]
+            return ((float(row[LAT]), float(row[VE]), float(row[VN]), self.step_s),)
+        spans_s = (len(self.values) - 1) * self.step_s
+        count = max(1, min(_STRETCHES, int(spans_s / _STRETCH_S)))
+        found: list[tuple[np.ndarray, float]] = []
+        for part in np.array_split(self.values[:, [LAT, VE, VN]], count):
+            mean, duration_s = part.mean(axis=0), len(part) * self.step_s
+            if found and np.all(np.abs(mean - found[-1][0]) < _ALIKE):
+                before, before_s = found.pop()
+                whole_s = before_s + duration_s
+                mean, duration_s = (before * before_s + mean * duration_s) / whole_s, whole_s
+            found.append((mean, duration_s))
+        return tuple((float(m[0]), float(m[1]), float(m[2]), duration_s) for m, duration_s in found)
 
     def at(self, rows: np.ndarray) -> np.ndarray:
         """Rows of `values`, shape (m, 15), not to be written to; a single row stands for all times.

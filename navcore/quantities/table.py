@@ -203,9 +203,8 @@ _ROWS = (
         "1/s",
         "1/s",
         Text(
-            "Fastest growth of both channels with heading and latitude at the site, as the law "
-            "is sampled and "
-            "the log's difference is held; negative when all decay. Longitude is left out."
+            "Fastest growth of both channels with heading and latitude along the motion, as the law is "
+            "sampled and the log's difference is held; negative when all decay. Longitude is left out."
         ),
         signed=True,
     ),

@@ -1,21 +1,22 @@
 """Steps that every fidelity takes alike for a method: its network and law, the log it sees, its result."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from navcore.analysis import Loop, analyse
 from navcore.analysis.filter_loop import filter_loop
-from navcore.analysis.held_log import held_log
-from navcore.analysis.whole_system import Course, WholeSystem, duration, growth_under_way, whole_system
+from navcore.analysis.held_log import Stretch, growth_along, held_log
+from navcore.analysis.whole_system import WholeSystem, duration, whole_system
 from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, spans_from
 from navcore.motion.truth import Truth
+from navcore.networks.azimuth_loop import AzimuthChannel
 from navcore.networks.base import LinearNetwork
 from navcore.networks.known import transfer_at
 from navcore.scenario.method import Method
@@ -58,6 +59,10 @@ def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
     return replace(reference, error=reference.error + extra)
 
 
+_MORE, _LEAST_GROWTH = 1.5, 1e-9
+"""Growth along a motion is warned of from so many times that at rest, and from so much, 1/s."""
+
+
 @dataclass(frozen=True)
 class Stability:
     """Verdict of the analysis on a method before it runs.
@@ -71,7 +76,7 @@ class Stability:
     warnings : tuple of str
         Of the channel, of the whole system, and of the law as it is sampled.
     growth_per_s : float or None
-        Of `navcore.analysis.held_log.HeldLog`; None where no closed loop stands for the method.
+        Of the whole system along the motion; None where no closed loop stands for the method.
     """
 
     loop: Loop
@@ -101,7 +106,7 @@ def stability_of(
     log : ReferenceErrors
         Gives the log's period, and whether the computed heading turns it.
     truth : Truth
-        Gives the mean velocity.
+        The motion.
     network : LinearNetwork
         H(s) to be judged.
     """
@@ -121,24 +126,59 @@ def stability_of(
         sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth, coupled, azimuth)
         warnings, growth = (*warnings, *sampled.warnings), sampled.growth_per_s
         if coupled:
-            course = Course(*truth.mean_velocity, kind.referenced and log.body_frame)
-            place = scenario.earth, scenario.site.height_m
-            warnings += tuple(_under_way(course, growth_under_way(acting, lat, course, *place, azimuth)))
+            at_rest, turned = growth, kind.referenced and log.body_frame
+            growth = growth_under_way(scenario, acting, truth, (period_s, law_step_s), azimuth, turned)
+            if growth > max(_MORE * at_rest, _LEAST_GROWTH):
+                warnings += (_under_way(truth, turned, growth),)
     return Stability(loop, whole, warnings, growth)
 
 
-def _under_way(course: Course, growth: float) -> Iterator[str]:
-    """Yield a warning of a growth (1/s) that the velocity gives the whole system."""
-    if growth > 0.0:
+def growth_under_way(
+    scenario: Scenario,
+    acting: LinearNetwork,
+    truth: Truth,
+    timing_s: tuple[float, float],
+    azimuth: AzimuthChannel | None,
+    turned: bool,
+) -> float:
+    """Growth of the whole system along the motion as the law is sampled, 1/s (theory.md 10).
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Gives the Earth.
+    acting : LinearNetwork
+        H(s) as it acts.
+    truth : Truth
+        The motion.
+    timing_s : (float, float)
+        Time between two epochs of what the law reads, and between two calls of the law, s.
+    azimuth : LinearNetwork or AzimuthGains or None
+        What acts in the azimuth channel.
+    turned : bool
+        The law reads a log that the computed heading turns.
+    """
+    stretches = tuple(Stretch(*one) for one in truth.stretches)
+    return growth_along(acting, *timing_s, stretches, scenario.earth, azimuth, turned)
+
+
+def _under_way(truth: Truth, turned: bool, growth: float) -> str:
+    """Warn of a growth (1/s) that the motion gives the whole system."""
+    every = duration(1.0 / growth)
+    (_, v_e, v_n, _), *others = truth.stretches
+    text = Text(
+        "whole system under way: along the motion the errors grow, e-folding time {growth}", growth=every
+    )
+    if not others:
         text = Text(
             "whole system under way: at the mean velocity, {speed:.3g} m/s on course {course:.0f}°, the "
             "errors grow, e-folding time {growth}",
-            speed=math.hypot(course.v_e, course.v_n),
-            course=math.degrees(math.atan2(course.v_e, course.v_n)) % 360.0,
-            growth=duration(1.0 / growth),
+            speed=math.hypot(v_e, v_n),
+            course=math.degrees(math.atan2(v_e, v_n)) % 360.0,
+            growth=every,
         )
-        why = Text("a log in the ship's axes is turned by the computed heading, and moves it")
-        yield Text.joined("; ", (text, why)) if course.turned else text
+    why = Text("a log in the ship's axes is turned by the computed heading, and moves it")
+    return Text.joined("; ", (text, why)) if turned else text
 
 
 def _log_period_s(scenario: Scenario, log: ReferenceErrors, law_step_s: float) -> float:
