@@ -24,6 +24,7 @@ from pydantic import Field, ValidationError
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.inputs import TooLargeError, read_bytes
 from navcore.foundation.parameters import Parameters
 from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
@@ -213,16 +214,15 @@ def read_map(path: str | os.PathLike[str], field: str = "map") -> ColumnMap:
     Raises
     ------
     InputError
-        No such file, no TOML, or a field that is wrong: names it, its value and what is allowed.
+        No such file, no regular file, no TOML, or a field that is wrong: names it, its value and what is
+        allowed.
     """
     file = Path(path)
     try:
-        with file.open("rb") as stream:
-            raw = stream.read(LARGEST_MAP_BYTES + 1)
-        if len(raw) > LARGEST_MAP_BYTES:
-            allowed = Text("is larger than {most} bytes: no map", most=LARGEST_MAP_BYTES)
-            raise InputError(Fault("", field, str(path), allowed))
-        text = raw.decode("utf-8-sig")
+        text = read_bytes(file, LARGEST_MAP_BYTES).decode("utf-8-sig")
+    except TooLargeError:
+        allowed = Text("is larger than {most} bytes: no map", most=LARGEST_MAP_BYTES)
+        raise InputError(Fault("", field, str(path), allowed)) from None
     except (OSError, ValueError) as problem:
         why = getattr(problem, "strerror", None) or Text("is not UTF-8 text: no map")
         raise InputError(Fault("", field, str(path), why)) from None
@@ -232,7 +232,7 @@ def read_map(path: str | os.PathLike[str], field: str = "map") -> ColumnMap:
 def map_beside(path: str | os.PathLike[str]) -> Path | None:
     """Map that is saved beside a recording under its name and `MAP_SUFFIX`; None where there is none."""
     beside = Path(f"{os.fspath(path)}{MAP_SUFFIX}")
-    return beside if beside.is_file() else None
+    return beside if os.path.isfile(beside) else None  # no path is too odd to be asked for
 
 
 def parse_map(text: str, where: str) -> ColumnMap:

@@ -9,6 +9,7 @@ import zlib
 from pathlib import Path
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import opened
 from navcore.foundation.text import Text
 from navcore.io.known_files import refuse_known
 
@@ -39,11 +40,11 @@ def unpacked(path: Path, most: int, field: str = "") -> bytes:
         Damaged, encrypted, more than ``most`` bytes, or a zip file that does not hold one file alone.
     """
     refuse_known(path, field)
-    with path.open("rb") as stream:
+    with opened(path) as stream:
         head = stream.read(4)
-    kind = next((magic for magic in _NAMES if head.startswith(magic)), b"")
-    if not kind:
-        return path.read_bytes()
+        kind = next((magic for magic in _NAMES if head.startswith(magic)), b"")
+        if not kind:
+            return head + stream.read()
     try:
         content = _READERS[kind](path, most + 1)
     except InputError as error:
@@ -78,7 +79,7 @@ def _named(content: bytes) -> str:
 
 def head_of(path: Path, size: int) -> bytes:
     """First bytes of a file, unpacked if it is compressed; of a damaged one those that are packed."""
-    with path.open("rb") as stream:
+    with opened(path) as stream:
         packed = stream.read(size)
     kind = next((magic for magic in _NAMES if packed.startswith(magic)), b"")
     if not kind:

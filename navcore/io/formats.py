@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from navcore.foundation.inputs import opened
 from navcore.io.series import Recording
 from navcore.io.source import read_text
 
@@ -61,7 +62,7 @@ class Candidate:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        with path.open("rb") as stream:
+        with opened(path) as stream:
             self.head = stream.read(_HEAD_BYTES)
 
     @cached_property

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import opened
 from navcore.foundation.text import Text
 
 HEAD_BYTES = 1024
@@ -185,7 +186,7 @@ _SPREADSHEETS: tuple[tuple[str, str, Contents], ...] = (
 def refuse_known(path: Path, field: str = "", content: bytes | None = None) -> None:
     """Refuse a file of a known kind that is not read, or such a content; raises `InputError`."""
     if content is None:
-        with path.open("rb") as stream:
+        with opened(path) as stream:
             head = stream.read(HEAD_BYTES)
         if head.startswith(b"PK\x03\x04"):
             _refuse_spreadsheet(path, field)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import NotRegularError, regular
 from navcore.foundation.text import Text
 from navcore.io.compressed import unpacked
 
@@ -37,7 +38,7 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
     Raises
     ------
     InputError
-        No such file, not a file, not readable, empty or larger than `LARGEST_FILE_BYTES`.
+        No such file, not a regular file, not readable, empty or larger than `LARGEST_FILE_BYTES`.
     """
     file = Path(path)
 
@@ -47,17 +48,16 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
         )
 
     try:
-        present, regular = file.exists(), file.is_file()
-    except (OSError, ValueError) as problem:
-        why = getattr(problem, "strerror", None) or type(problem).__name__
-        raise refuse(Text("cannot be opened ({name})", name=why)) from problem
-    if not present:
-        raise refuse(Text("no such file"))
-    if not regular:
-        raise refuse(Text("is not a file"))
+        size = regular(file).st_size
+    except (FileNotFoundError, NotADirectoryError):
+        raise refuse(Text("no such file")) from None
+    except NotRegularError as problem:
+        raise refuse(problem.reason) from None
+    except OSError as problem:
+        why = problem.strerror or type(problem).__name__
+        raise refuse(Text("cannot be opened ({name})", name=why)) from None
     if not os.access(file, os.R_OK):
         raise refuse(Text("cannot be read (permissions)"))
-    size = file.stat().st_size
     if size == 0:
         raise refuse(Text("the file is empty"))
     if size > LARGEST_FILE_BYTES:

@@ -3,6 +3,7 @@
 import difflib
 import hashlib
 import json
+import os
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import NotRegularError, TooLargeError, opened, read_bytes
 from navcore.foundation.text import Text
 from navcore.foundation.times import in_other_unit
 from navcore.foundation.written_toml import read_toml_text, read_value
@@ -87,19 +89,13 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file is missing, too large, no text or no TOML.
+        The file is missing, no regular file, too large, no text or no TOML.
     """
     try:
-        if path.stat().st_size > LARGEST_BYTES:
-            raise InputError(
-                Fault(
-                    where,
-                    "",
-                    None,
-                    Text("is larger than {largest_bytes} bytes: no scenario", largest_bytes=LARGEST_BYTES),
-                )
-            )
-        text = path.read_bytes().decode("utf-8")
+        text = read_bytes(path, LARGEST_BYTES).decode("utf-8")
+    except TooLargeError:
+        large = Text("is larger than {largest_bytes} bytes: no scenario", largest_bytes=LARGEST_BYTES)
+        raise InputError(Fault(where, "", None, large)) from None
     except OSError as error:
         raise InputError(Fault(where, "", None, _not_there(where, error))) from None
     except UnicodeDecodeError:
@@ -143,13 +139,15 @@ def _not_there(where: str, error: OSError) -> str:
             hint=hint,
             presets=", ".join(presets()),
         )
+    if isinstance(error, NotRegularError):
+        return error.reason
     return Text("cannot be read: {strerror}", strerror=error.strerror)
 
 
 def _resolved(value: Any, folder: Path) -> Any:
     if isinstance(value, str):
         # What no path can be is left as it is: the field's own check names it.
-        return str((folder / value).resolve()) if value and "\0" not in value else value
+        return os.path.realpath(folder / value) if value and "\0" not in value else value
     return [_resolved(item, folder) for item in value] if isinstance(value, list) else value
 
 
@@ -273,5 +271,9 @@ def scenario_hash(scenario: Scenario) -> str:
 
 
 def _fingerprints(files: str | list[str]) -> list[str]:
-    paths = [Path(file) for file in ([files] if isinstance(files, str) else files)]
-    return [f"{path.name}:{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in paths]
+    return [_fingerprint(Path(file)) for file in ([files] if isinstance(files, str) else files)]
+
+
+def _fingerprint(path: Path) -> str:
+    with opened(path) as stream:
+        return f"{path.name}:{hashlib.file_digest(stream, 'sha256').hexdigest()}"

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import opened, regular
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.io.column_map import ColumnMap
@@ -100,13 +101,13 @@ def read_imu(
     """
     file = Path(path)
     try:
-        if file.stat().st_size > _LARGEST_FILE:
+        if regular(file).st_size > _LARGEST_FILE:
             allowed = Text(
                 "is larger than {largest_file} MB: cut it, a day at 100 Hz is enough",
                 largest_file=_LARGEST_FILE >> 20,
             )
             raise InputError(Fault(str(path), "imu.file", None, allowed))
-        with file.open("rb") as stream:
+        with opened(file) as stream:
             held = open_container(file) if is_container(stream.read(_HEAD_BYTES), file) else None
         if held is not None:
             return _of_table(read_imu_container(held, str(path), column_map), str(path), axes)

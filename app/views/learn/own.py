@@ -11,6 +11,7 @@ from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.inputs import TooLargeError, read_bytes
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.session.display import Display
@@ -68,9 +69,9 @@ def use_lessons(folder: Path) -> tuple[Lesson, ...]:
 
 def _text(file: Path) -> str:
     try:
-        if file.stat().st_size > _LARGEST_BYTES:
-            raise InputError(Fault(file.name, "", None, Text("is larger than 1 MiB: no lesson")))
-        return file.read_bytes().decode("utf-8")
+        return read_bytes(file, _LARGEST_BYTES).decode("utf-8")
+    except TooLargeError:
+        raise InputError(Fault(file.name, "", None, Text("is larger than 1 MiB: no lesson"))) from None
     except OSError as error:
         raise InputError(Fault(file.name, "", None, error.strerror or str(error))) from None
     except UnicodeDecodeError:

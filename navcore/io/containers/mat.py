@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import opened
 from navcore.foundation.text import Text
 from navcore.io.columns import MOST_COLUMNS
 from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container, Part, by_column
@@ -90,7 +91,7 @@ def _numeric_fields(path: str, value: Any, deep: int = 0) -> Iterator[tuple[str,
 def _refuse_swollen(path: Path) -> None:
     """Refuse a file whose compressed variables unpack to more than may be."""
     left = MOST_UNPACKED_BYTES
-    with path.open("rb") as stream:
+    with opened(path) as stream:
         head = stream.read(_HEAD_BYTES)
         order = "<" if head[126:128] == b"IM" else ">"
         while len(tag := stream.read(8)) == 8:

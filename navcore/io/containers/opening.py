@@ -5,6 +5,7 @@ from __future__ import annotations
 import zipfile
 from pathlib import Path
 
+from navcore.foundation.inputs import opened
 from navcore.io.containers.base import Container
 from navcore.io.containers.hdf import HdfFile, MatHdfFile
 from navcore.io.containers.mat import MatFile, is_level_4
@@ -33,7 +34,7 @@ def is_container(head: bytes, path: Path) -> bool:
 
 def open_container(path: Path) -> Container:
     """Columns of a file that is one of these; raises `InputError` where it cannot be read."""
-    with path.open("rb") as stream:
+    with opened(path) as stream:
         kind = _kind_of(stream.read(512))
     return (kind or MatFile)(path)
 
