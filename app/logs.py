@@ -6,6 +6,9 @@ import logging.handlers
 import os
 import sys
 import time
+from typing import Any
+
+from navcore.foundation.visible import visible
 
 
 class _Lines(logging.Formatter):
@@ -23,6 +26,18 @@ class _Lines(logging.Formatter):
         if record.exc_info:
             line["exception"] = self.formatException(record.exc_info)
         return json.dumps(line, ensure_ascii=False)
+
+
+class _People(logging.Formatter):
+    """Name and message in one line; what it quotes from outside does nothing to the terminal."""
+
+    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802 - the name is logging's
+        """Write the line of an event."""
+        return visible(super().formatMessage(record))
+
+    def formatException(self, ei: Any) -> str:  # noqa: N802 - the name is logging's
+        """Write an exception's trace."""
+        return "\n".join(map(visible, super().formatException(ei).splitlines()))
 
 
 def begin_logging(how: str | None = None, *, to_file: bool = True) -> None:
@@ -43,7 +58,7 @@ def begin_logging(how: str | None = None, *, to_file: bool = True) -> None:
     if file and to_file:
         most = int(os.environ.get("SCHULER_LOG_BYTES", "10000000"))
         handler = logging.handlers.RotatingFileHandler(file, maxBytes=most, backupCount=2, encoding="utf-8")
-    handler.setFormatter(_Lines() if how == "json" else logging.Formatter("%(name)s: %(message)s"))
+    handler.setFormatter(_Lines() if how == "json" else _People("%(name)s: %(message)s"))
     log = logging.getLogger("schuler")
     log.handlers = [handler]
     log.setLevel(logging.INFO)  # removals are told

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 from navcore.foundation.compiled import COMPILATION
 from navcore.foundation.errors import InputError
+from navcore.foundation.visible import visible
 from schuler_bench.cli.stop import stop_on_signal
 from schuler_bench.cli.terminal import on_terminal
 
@@ -57,7 +58,7 @@ class Bar:
     """
 
     def __init__(self, title: str, show: bool) -> None:
-        self._title = title
+        self._title = visible(title)
         self._fraction = 0.0
         self._compiled = COMPILATION.count, COMPILATION.seconds
         self._bar: tuple[Progress, TaskID] | None = None

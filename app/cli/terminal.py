@@ -1,4 +1,4 @@
-"""stdout and stderr: results, one JSON document, notes; none of them can end in a traceback."""
+"""stdout and stderr: results, one JSON document, notes; none can end in a traceback or steer the terminal."""
 
 import io
 import json
@@ -6,6 +6,8 @@ import os
 import sys
 from collections.abc import Callable, Iterable
 from typing import Any, TextIO
+
+from navcore.foundation.visible import visible
 
 _OF_A_NOTEBOOK = "JPY_PARENT_PID"
 """Variable that Jupyter sets for its kernels: a cell keeps every state of a bar, and its control codes."""
@@ -26,13 +28,16 @@ def emit(text: str) -> None:
 
 
 def emit_result(as_json: bool, document: Any, lines: Callable[[], Iterable[str]]) -> None:
-    """Print a result to stdout: one JSON document, without NaN and infinity, or its lines for people."""
-    emit(json.dumps(document, indent=2, allow_nan=False) if as_json else "\n".join(lines()))
+    """Print a result to stdout: one JSON document, without NaN and infinity, or its lines for people.
+
+    Names, titles and whatever else the lines quote from a file do nothing to the terminal.
+    """
+    emit(json.dumps(document, indent=2, allow_nan=False) if as_json else "\n".join(map(visible, lines())))
 
 
 def say(text: str) -> None:
-    """Print one line to stderr."""
-    _write(sys.stderr, text)
+    """Print one line to stderr; what it quotes does nothing to the terminal."""
+    _write(sys.stderr, visible(text))
 
 
 def finish() -> bool:

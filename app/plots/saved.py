@@ -2,12 +2,12 @@
 
 import csv
 import io
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
+from navcore.foundation.cells import safe_cell
 from navcore.foundation.text import Text
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import counts
@@ -182,15 +182,6 @@ def _csv(about: Iterable[str], heads: list[str], rows: Iterable[Sequence[Any]]) 
     for line in about:
         text.write(f"# {' '.join(line.split())}\n")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(_safe(head) for head in heads)
-    writer.writerows([_safe(cell) for cell in row] for row in rows)
+    writer.writerow(safe_cell(head) for head in heads)
+    writer.writerows([safe_cell(cell) for cell in row] for row in rows)
     return text.getvalue().encode()
-
-
-def _safe(cell: Any) -> Any:
-    """Cell as a table program takes it: gaps empty, and no text that it would carry out as a formula."""
-    if isinstance(cell, float):
-        return "" if not math.isfinite(cell) else repr(cell)
-    if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@", "\t"):
-        return f"'{cell}"
-    return cell

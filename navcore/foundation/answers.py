@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navcore.foundation.text import Text
+from navcore.foundation.visible import visible
 
 Cell = str | float | None
 """A text, or a number, which its column writes; None where there is none."""
@@ -163,6 +164,7 @@ def columns(rows: Sequence[Sequence[str]], gap: str = "  ", left: Collection[int
     >>> columns([["method", "m/s"], ["free", "1.25"]])
     ['method   m/s', 'free    1.25']
     """
+    rows = [[visible(cell) for cell in row] for row in rows]
     widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
     lines = []
     for row in rows:
