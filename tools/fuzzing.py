@@ -36,7 +36,7 @@ _TOKENS = tuple(
 
 def seeds(folder: Path) -> list[bytes]:
     """Write small good files: NMEA 0183, tables with maps, containers, an IMU; GPX and PSINS text too."""
-    from navcore.checks.map_guess import write_map
+    from navcore.checks.map_guess import guessed_map
     from tests import planted
 
     track, log = ({k: v[:_ROWS] for k, v in part.items()} for part in planted.ship())
@@ -44,7 +44,7 @@ def seeds(folder: Path) -> list[bytes]:
     files.append(planted.write_imu(folder, {k: v[:_ROWS] for k, v in planted.rocking_imu().items()}))
     for table in [file for file in files if file.suffix == ".csv"]:
         files.append(table.with_suffix(".map"))
-        write_map(str(table), str(files[-1]))
+        files[-1].write_text(guessed_map(str(table)), encoding="utf-8")
     found = [file.read_bytes() for file in files]
     fixes = zip(track["lat"].tolist(), track["lon"].tolist(), strict=True)
     points = "".join(

@@ -11,11 +11,13 @@ from tyro.conf import Positional, UseAppendAction, arg
 
 from navcore.foundation.answers import Answer
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import noting
 from navcore.questions.base import Option, Question
 from schuler_bench.cli.terminal import emit_result, say
 
 _SET = "Override one field of the scenario first, e.g. method.0.network.xi=0.5."
 _OUT = {"file": "File for {what}.", "folder": "Folder for {what}."}
+FORCE = "Let --out replace a file that this command has not written, or that was edited since."
 _METAVARS = {"file": "FILE", "folder": "DIR"}
 
 
@@ -29,12 +31,14 @@ class AskingCommand:
         """Answer and print; 3 when it was stopped, or a method diverged."""
         given: Mapping[str, Any] = vars(self)
         out: Path | None = given.get("out")
+        with noting() as reads:
+            question = self.asked.ask(self._fields(given))
+        force = given.get("force", False)
         if out is not None:
-            self.asked.require_free(out)
-        question = self.asked.ask(self._fields(given))
+            question.require_free(out, reads, force=force)
         answer = self._answered(question, given)
         if out is not None:
-            question.write(answer, out)
+            question.write(answer, out, reads, force=force)
         emit_result(given["json"], answer.document(), answer.lines)
         if not answer.complete:
             say(f"{self._source(given)}: stopped; {answer.so_far}")
@@ -76,6 +80,8 @@ def command_of(question: type[Question]) -> type[AskingCommand]:
     if question.writes:
         words = _OUT[question.writes].format(what=question.written)
         rows.append(("out", _with(Path | None, _METAVARS[question.writes], words), None))
+    if question.writes == "file":
+        rows.append(("force", Annotated[bool, arg(help=FORCE)], False))
     rows.append(("json", Annotated[bool, arg(help="Print one JSON document.")], False))
     rows.append(("quiet", Annotated[bool, arg(help="No progress bar.")], False))
     # what has no default stands first

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from navcore.checks.report import FileReport
 
 
+_WRITE_MAP = "--write-map"
 _READERS = ("navcore.checks.imu", "navcore.io.csv", "navcore.io.nmea_recording", "navcore.io.tables")
 _SCENARIO_READERS = ("schuler_bench.cli.check_scenario",)
 _SCIENTIFIC = ("scipy.io", "h5py")
@@ -37,6 +38,8 @@ class CheckCommand:
         Map (TOML) that says what the columns of the file mean.
     write_map : str
         Write the guess of such a map to this file, to be edited.
+    force : bool
+        Let --write-map replace a file that it has not written, or that was edited since.
     json : bool
         Print one JSON document.
     """
@@ -44,21 +47,31 @@ class CheckCommand:
     file: Annotated[Positional[str], arg(metavar="FILE")]
     map: str | None = None
     write_map: str | None = None
+    force: bool = False
     json: bool = False
 
     def execute(self) -> int:
         """Print the report; 0 when the file was understood, else 2."""
         if self.write_map is not None:
-            from navcore.checks.map_guess import write_map
-
-            write_map(self.file, self.write_map, self.map)
-            say(f"map: {self.write_map}")
+            self._write_map(self.write_map)
         report = guarded_check(self.file, self.map)
         if self.json or report.ok:
             emit_result(self.json, report.as_dict(), report.lines)
         for fault in report.faults:
             say(str(fault))
         return 0 if report.ok else 2
+
+    def _write_map(self, target: str) -> None:
+        from navcore.checks.map_guess import guessed_map
+        from navcore.foundation.errors import Fault, InputError
+        from navcore.foundation.out import require_file, write_file
+
+        if self.map is not None:
+            raise InputError(Fault("", _WRITE_MAP, target, "does not go with --map"))
+        require_file(target, "check", [self.file], force=self.force, option=_WRITE_MAP)
+        text = guessed_map(self.file)
+        write_file(target, text, "check", [self.file], force=self.force, option=_WRITE_MAP)
+        say(f"map: {target}")
 
 
 def guarded_check(file: str, map_file: str | None = None) -> FileReport:

@@ -20,7 +20,7 @@ class RunCommand:
     set : tuple of str
         Override one field, e.g. method.0.network.xi=0.5.
     out : Path or None
-        Folder for scenario.toml, metrics.json and the time series: made, or replaced as a whole.
+        Folder for scenario.toml, metrics.json and the time series: made if need be; other files in it stay.
     format : {"parquet", "csv"}
         Of the time series.
     json : bool
@@ -39,19 +39,21 @@ class RunCommand:
     def execute(self) -> int:
         """Run, write, print; 0 when every method went through, else 3."""
         from navcore.engine.measures import metrics
-        from navcore.engine.results import require_replaceable, write_results
+        from navcore.engine.results import require_results, write_results
         from navcore.engine.simulation import simulate
+        from navcore.foundation.inputs import noting
         from navcore.scenario.file import load
         from schuler_bench.cli.progress import working
         from schuler_bench.cli.run_text import run_text
 
+        with noting() as reads:
+            scenario = load(self.scenario, self.set)
         if self.out is not None:
-            require_replaceable(self.out)
-        scenario = load(self.scenario, self.set)
+            require_results(scenario, self.out, self.format, reads)
         with working(scenario.title or "running", self.quiet, self.scenario) as (progress, stopped):
             run = simulate(scenario, progress, stopped)
         if self.out is not None:
-            write_results(run, self.out, self.format)
+            write_results(run, self.out, self.format, reads)
         emit_result(self.json, metrics(run), lambda: run_text(run))
         for method in run.methods:
             if method.reason:

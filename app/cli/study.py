@@ -55,6 +55,9 @@ class StudyCommand:
     def execute(self) -> int:
         """Run, sum up, print; 3 when it was stopped. A run that diverges is a result."""
         from navcore.foundation.cores import cores
+        from navcore.foundation.inputs import noting
+        from navcore.scenario.reads import recordings as of_scenario
+        from navcore.study.file import recordings
         from navcore.study.plan import plan_of, require_affordable
         from navcore.study.results import Folder
         from navcore.study.study import carry_out
@@ -68,10 +71,12 @@ class StudyCommand:
             raise InputError(Fault("--hours", "", self.hours, "must be > 0 (h)"))
         if self.resume and self.out is None:
             raise InputError(Fault("--resume", "", None, "needs --out DIR, the folder of the results"))
-        plan = plan_of(self.study)
+        with noting() as reads:
+            plan = plan_of(self.study)
+        reads += [*recordings(plan.study), *of_scenario(plan.scenario)]
         with self._engine(plan, workers) as (engine, at_a_time), _folder(self.out) as path:
             require_affordable(plan, at_a_time, self.hours)
-            folder = Folder(path, plan)
+            folder = Folder(path, plan, reads)
             with (
                 folder.opened(self.resume),
                 working(plan.study.title or "study", self.quiet, self.study) as (progress, stopped),

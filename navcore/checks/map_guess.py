@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.kernel_files import replacing
-from navcore.foundation.text import Text
+from navcore.foundation.inputs import opened
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, known_columns
 from navcore.io.columns import MOST_CELLS, MOST_COLUMNS
 from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
@@ -96,7 +95,7 @@ def preview_of(path: Path) -> Preview | None:
     """Preview of a table that a map may describe; None for all other files; raises `InputError`."""
     if not takes_map(path):
         return None
-    with path.open("rb") as stream:
+    with opened(path) as stream:
         packed = is_container(stream.read(_HEAD_BYTES), path)
     found = _of_container(open_container(path)) if packed else preview(read_text(path).text)
     return found if found.is_table else None
@@ -224,26 +223,19 @@ def as_toml(data: dict[str, Any], table: Preview, name: str) -> str:
     return "\n".join(words) + "\n"
 
 
-def write_map(file: str, target: str, map_file: str | None = None) -> None:
-    """Write the guess of a map for a text table.
+def guessed_map(file: str) -> str:
+    """Return the guess of a map for a table, as TOML.
 
     Raises
     ------
     InputError
-        The file cannot be read or is no text table, or the target cannot be written; nothing is half-written.
+        The file cannot be read or is no table.
     """
-    if map_file is not None:
-        raise InputError(Fault("", "write_map", target, Text("cannot be given together with map")))
     path = require_file(file)
     table = preview_of(path)
     if table is None:
-        raise InputError(Fault(path.name, "write_map", target, NO_TABLE))
-    try:
-        with replacing(Path(target)) as stream:
-            stream.write(as_toml(guess(table), table, path.name).encode())
-    except OSError as problem:
-        why = problem.strerror or type(problem).__name__
-        raise InputError(Fault("", "write_map", target, Text("cannot be written ({why})", why=why))) from None
+        raise InputError(Fault(path.name, "", None, NO_TABLE))
+    return as_toml(guess(table), table, path.name)
 
 
 def _quoted(text: str) -> str:

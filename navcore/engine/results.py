@@ -1,20 +1,24 @@
-"""Files out: the folder of one run (interface.md), made or replaced as a whole."""
+"""Files out: the results of one run in a folder (interface.md)."""
 
 from __future__ import annotations
 
 import json
 import os
-import secrets
-import shutil
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from navcore.engine.measures import metrics
 from navcore.engine.run import Run
-from navcore.foundation.out import refused, writing
+from navcore.foundation.cells import safe_cell
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.inputs import opened
+from navcore.foundation.out import placing, require_folder, writing
 from navcore.foundation.text import Text
 from navcore.quantities import COMPONENTS
 from navcore.scenario.file import to_toml
+from navcore.scenario.model import Scenario
+from navcore.scenario.reads import recordings
 
 if TYPE_CHECKING:
     import pyarrow
@@ -22,44 +26,48 @@ if TYPE_CHECKING:
 Format = Literal["parquet", "csv"]
 SCENARIO_FILE, METRICS_FILE, SERIES_STEM = "scenario.toml", "metrics.json", "timeseries"
 OUR_FILES = frozenset({SCENARIO_FILE, METRICS_FILE, f"{SERIES_STEM}.parquet", f"{SERIES_STEM}.csv"})
+_FIRST_COLUMNS = ("method", "t_s", *COMPONENTS)
+"""By which the time series of an earlier run are known."""
 
 
-def require_replaceable(folder: str | os.PathLike[str]) -> None:
-    """Refuse a folder that a run must not replace: one that is not an earlier run's and holds other files.
+def require_results(
+    scenario: Scenario,
+    folder: str | os.PathLike[str],
+    format: Format = "parquet",
+    reads: Iterable[str | os.PathLike[str]] = (),
+) -> None:
+    """Refuse a folder to which the results of a scenario cannot be written.
 
-    A folder with a run's scenario and metrics is replaced with whatever files lie beside them, but not with
-    folders in it, and not where the user stands.
+    Parameters
+    ----------
+    scenario : Scenario
+        Its recordings are never replaced.
+    folder : path
+        May be missing; files of other names in it do not matter.
+    format : {"parquet", "csv"}
+        Of the time series.
+    reads : iterable of path
+        Further files that are never replaced: that of the scenario, say.
 
     Raises
     ------
     InputError
-        It is no folder, cannot be looked into, or holds what no run writes; that is named.
+        See `navcore.foundation.out.require_folder`; or a path in the scenario is no UTF-8 text.
     """
-    folder = Path(folder)
-    with writing(folder):
-        if not folder.exists() and not folder.is_symlink():
-            return
-        if not folder.is_dir():
-            raise refused(folder, Text("exists and is not a folder"))
-        entries = list(os.scandir(folder))
-        files = {entry.name for entry in entries if entry.is_file()}
-        a_runs = files >= {SCENARIO_FILE, METRICS_FILE} and _exchangeable(folder.resolve())
-        foreign = sorted(e.name for e in entries if e.is_dir() or not (a_runs or e.name in OUR_FILES))
-    if foreign:
-        named = ", ".join(foreign[:3]) + (
-            Text(" and {foreign} more", foreign=len(foreign) - 3) if len(foreign) > 3 else ""
-        )
-        raise refused(
-            folder, Text("would be replaced as a whole, but holds what no run wrote: {named}", named=named)
-        )
+    _scenario_text(scenario)
+    require_folder(folder, _names(format), [*recordings(scenario), *reads])
 
 
-def write_results(run: Run, folder: str | os.PathLike[str], format: Format = "parquet") -> None:
+def write_results(
+    run: Run,
+    folder: str | os.PathLike[str],
+    format: Format = "parquet",
+    reads: Iterable[str | os.PathLike[str]] = (),
+) -> None:
     """Write scenario.toml, metrics.json and timeseries.parquet or .csv into a folder.
 
-    The files are completed beside the folder and then take its place, so that no half-written one is ever
-    seen under its name. Where the folder itself cannot be exchanged (a mount point, the current folder, a
-    parent that cannot be written), complete files replace those in it one by one.
+    The files take their names once all of them are complete. Files of other names are left alone, but for
+    the time series that an earlier run has left there in the other format.
 
     Parameters
     ----------
@@ -67,22 +75,23 @@ def write_results(run: Run, folder: str | os.PathLike[str], format: Format = "pa
         Also a stopped or diverged one; its metrics say so.
     folder : path
         Made with its parents when missing.
-    format : {"parquet", "csv"}
-        Of the time series.
+    format, reads
+        See `require_results`.
 
     Raises
     ------
     InputError
-        The folder is not replaceable (`require_replaceable`), or cannot be written (disk full, read-only).
+        See `require_results`, or the folder cannot be written (disk full, read-only); what was there stays.
     """
-    require_replaceable(folder)
-    target = Path(os.path.realpath(folder))
-    with writing(Path(folder)):
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if _exchangeable(target):
-            _exchange(run, target, format)
-        else:
-            _replace_inside(run, target, format)
+    names = _names(format)
+    read = [*recordings(run.scenario), *reads]
+    document = json.dumps(metrics(run), indent=2, allow_nan=False) + "\n"
+    with placing(folder, names, read) as hidden:
+        _write_series(run, hidden / names[0])
+        (hidden / METRICS_FILE).write_text(document, "utf-8")
+        (hidden / SCENARIO_FILE).write_bytes(_scenario_text(run.scenario))
+    for name in OUR_FILES.difference(names):
+        _remove_series(Path(folder) / name, read)
 
 
 def timeseries(run: Run) -> pyarrow.Table:
@@ -124,14 +133,42 @@ def timeseries(run: Run) -> pyarrow.Table:
     return pa.table(columns)
 
 
-def _write_files(run: Run, folder: Path, format: Format) -> list[str]:
-    # First what needs imports and may refuse, last what is small.
-    series = f"{SERIES_STEM}.{format}"
-    _write_series(run, folder / series)
-    document = json.dumps(metrics(run), indent=2, allow_nan=False) + "\n"
-    (folder / METRICS_FILE).write_text(document, "utf-8")
-    (folder / SCENARIO_FILE).write_text(to_toml(run.scenario), "utf-8")
-    return [series, METRICS_FILE, SCENARIO_FILE]
+def _names(format: Format) -> tuple[str, str, str]:
+    return f"{SERIES_STEM}.{format}", METRICS_FILE, SCENARIO_FILE
+
+
+def _scenario_text(scenario: Scenario) -> bytes:
+    try:
+        return to_toml(scenario).encode()
+    except UnicodeEncodeError as error:
+        before, after = error.object[: error.start], error.object[error.start :]
+        line = before.rpartition("\n")[2] + after.partition("\n")[0]
+        allowed = Text("is no UTF-8 text, which scenario.toml needs: rename the file or folder")
+        raise InputError(Fault("--out", "", line, allowed)) from None
+
+
+def _remove_series(path: Path, reads: Iterable[str | os.PathLike[str]]) -> None:
+    """Remove the time series of an earlier run, which belong to none of the files beside them now."""
+    is_read = any(os.path.exists(path) and os.path.exists(file) and path.samefile(file) for file in reads)
+    if not path.is_symlink() and not is_read and _first_columns(path) == _FIRST_COLUMNS:
+        with writing(path):
+            path.unlink()
+
+
+def _first_columns(path: Path) -> tuple[str, ...]:
+    """First columns of time series; empty where there are none."""
+    import pyarrow
+    import pyarrow.parquet
+
+    try:
+        with opened(path) as stream:
+            if path.suffix == ".csv":
+                header = stream.readline(4096).decode("ascii").strip().split(",")
+            else:
+                header = pyarrow.parquet.read_schema(stream).names
+    except (OSError, ValueError, pyarrow.ArrowException):
+        return ()
+    return tuple(header[: len(_FIRST_COLUMNS)])
 
 
 def _write_series(run: Run, path: Path) -> None:
@@ -139,6 +176,9 @@ def _write_series(run: Run, path: Path) -> None:
     if path.suffix == ".csv":
         import pyarrow.csv
 
+        methods = table["method"].combine_chunks().dictionary_encode()
+        safe = pyarrow.array(map(safe_cell, methods.dictionary.to_pylist()), pyarrow.string())
+        table = table.set_column(0, "method", safe.take(methods.indices))
         with path.open("wb") as stream:
             # pyarrow puts quotes around every name of a header it writes itself.
             stream.write((",".join(table.column_names) + "\n").encode())
@@ -148,46 +188,3 @@ def _write_series(run: Run, path: Path) -> None:
 
     with path.open("wb") as stream:
         pyarrow.parquet.write_table(table, stream, compression="zstd")
-
-
-def _beside(target: Path, role: str) -> Path:
-    return target.parent / f".{target.name}.{role}-{secrets.token_hex(4)}"
-
-
-def _exchangeable(target: Path) -> bool:
-    here = Path.cwd()
-    if target == here or target in here.parents or os.path.ismount(target):
-        return False
-    return os.access(target.parent, os.W_OK | os.X_OK)
-
-
-def _exchange(run: Run, target: Path, format: Format) -> None:
-    complete, old = _beside(target, "new"), _beside(target, "old")
-    try:
-        complete.mkdir()
-        _write_files(run, complete, format)
-        if target.exists():
-            target.rename(old)
-        try:
-            complete.rename(target)
-        except BaseException:
-            if old.exists():
-                old.rename(target)
-            raise
-    finally:
-        shutil.rmtree(complete, ignore_errors=True)
-        shutil.rmtree(old, ignore_errors=True)
-
-
-def _replace_inside(run: Run, target: Path, format: Format) -> None:
-    target.mkdir(exist_ok=True)
-    complete = target / f".new-{secrets.token_hex(4)}"
-    try:
-        complete.mkdir()
-        written = _write_files(run, complete, format)
-        for name in OUR_FILES - set(written):
-            (target / name).unlink(missing_ok=True)
-        for name in written:
-            os.replace(complete / name, target / name)
-    finally:
-        shutil.rmtree(complete, ignore_errors=True)

@@ -7,6 +7,9 @@ reader of a scenario, study, map or recording asks here first. What is wrong is 
 import errno
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from io import BufferedReader
 
 from navcore.foundation.text import Text
@@ -16,6 +19,7 @@ _KINDS = (
     (stat.S_ISFIFO, Text("is a pipe, not a file: write its content to a file first")),
     (stat.S_ISSOCK, Text("is a socket, not a file")),
 )
+_noted: ContextVar[list[str] | None] = ContextVar("files that are looked at", default=None)
 _DEVICE = Text("is a device, not a file")
 _MIB = 1 << 20
 
@@ -31,6 +35,17 @@ class NotRegularError(OSError):
 
 class TooLargeError(OSError):
     """A file holds more than is read."""
+
+
+@contextmanager
+def noting() -> Iterator[list[str]]:
+    """Give a list of the files that are read here meanwhile, by their real paths."""
+    noted: list[str] = []
+    before = _noted.set(noted)
+    try:
+        yield noted
+    finally:
+        _noted.reset(before)
 
 
 def regular(path: str | os.PathLike[str]) -> os.stat_result:
@@ -57,6 +72,8 @@ def regular(path: str | os.PathLike[str]) -> os.stat_result:
     except ValueError:  # a NUL in the path
         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL), str(path)) from None
     _require_regular(held, path)
+    if (noted := _noted.get()) is not None:
+        noted.append(os.path.realpath(path))
     return held
 
 

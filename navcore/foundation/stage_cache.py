@@ -140,8 +140,13 @@ def file_state(files: Any) -> tuple[tuple[str, int, int], ...]:
 
 
 def recorded_state(block: Any) -> tuple[tuple[str, int, int], ...]:
-    """`file_state` of the recordings of a block of the scenario and of their maps, named or beside them."""
+    """`file_state` of the recordings of a block of the scenario and of their maps."""
+    return file_state(recorded_files(block))
+
+
+def recorded_files(block: Any) -> list[str]:
+    """Recordings of a block of the scenario and their maps: the one that is named, or those beside them."""
     files = getattr(block, "file", None)
     listed = [files] if isinstance(files, str) else list(files or [])
     named = getattr(block, "map", None)
-    return file_state([*listed, *([named] if named else (file + MAP_SUFFIX for file in listed))])
+    return [*listed, *([named] if named else (file + MAP_SUFFIX for file in listed))]

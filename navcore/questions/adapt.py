@@ -1,6 +1,5 @@
 """Adapt: Sun's double loop, which makes the table of the policy ``adaptive``."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
@@ -55,6 +54,7 @@ class AdaptQuestion(Question):
     stopped: ClassVar[str] = Text("Stopped: no table was found.")
     keeps: ClassVar[bool] = False
     writes: ClassVar = "file"
+    files: ClassVar = ("scenario.toml",)
     written: ClassVar[str] = Text("the scenario with a further method that follows the table")
     example: ClassVar[str] = """\
 >>> from navcore import adapt
@@ -87,12 +87,10 @@ class AdaptQuestion(Question):
             raise StoppedError(Fault("", "", None, Text("stopped")))
         return found
 
-    def write(self, answer: Answer, out: Path) -> None:
-        """Write the scenario with a method that follows the table."""
+    def texts(self, answer: Answer) -> dict[str, str]:
+        """Return the scenario with a method that follows the table."""
         from navcore.design.sun import Tuning, with_table
-        from navcore.foundation.out import writing
         from navcore.scenario.file import to_toml
 
         assert isinstance(answer, Tuning)
-        with writing(out):
-            out.write_text(to_toml(with_table(self.scenario, answer)), encoding="utf-8")
+        return {"scenario.toml": to_toml(with_table(self.scenario, answer))}

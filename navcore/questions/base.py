@@ -8,7 +8,7 @@ line of `navcore.questions`.
 from __future__ import annotations
 
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union, get_args, get_origin
@@ -19,6 +19,7 @@ from pydantic.fields import FieldInfo
 from navcore.foundation.answers import Answer
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.out import PathLike, placing, require_file, require_folder, write_file
 from navcore.foundation.parameters import Parameters, extra_of
 from navcore.foundation.text import Text
 
@@ -135,6 +136,8 @@ class Question(Parameters):
         Of the function, for its docstring.
     writes, written : str
         What ``--out`` is ("file", "folder" or ""), and what is written there.
+    files : tuple of str
+        Names of the files that it writes; of a "file" its kind, for the user names it.
     keeps : bool
         What a stopped question has found so far is an answer.
     spare : bool
@@ -155,6 +158,7 @@ class Question(Parameters):
     example: ClassVar[str] = ""
     writes: ClassVar[Writes] = ""
     written: ClassVar[str] = ""
+    files: ClassVar[tuple[str, ...]] = ()
     keeps: ClassVar[bool] = True
     spare: ClassVar[bool] = False
     still_s: ClassVar[float] = 0.0
@@ -206,13 +210,70 @@ class Question(Parameters):
         """Scenario whose size says what it takes, and whose files must be at hand where it is answered."""
         return self.scenario
 
-    @classmethod
-    def require_free(cls, out: Path) -> None:
-        """Refuse a place for ``--out`` that holds what this question does not write; raises `InputError`."""
+    def recordings(self) -> list[str]:
+        """Return the paths of the recordings on which its scenarios and studies run, and of their maps."""
+        found: list[str] = []
+        for value in vars(self).values():
+            for one in value if isinstance(value, tuple) else (value,):
+                found += _recordings(one)
+        return found
 
-    def write(self, answer: Answer, out: Path) -> None:
-        """Write what ``--out`` asks for."""
+    def require_free(self, out: Path, reads: Iterable[PathLike] = (), *, force: bool = False) -> None:
+        """Refuse a place for ``--out`` that cannot be written or must not be replaced.
+
+        Parameters
+        ----------
+        out : Path
+            File or folder, see ``writes``.
+        reads : iterable of path
+            Files that the question was read from; with its recordings they are never replaced.
+        force : bool
+            Replace a file that this question has not written, too.
+
+        Raises
+        ------
+        InputError
+            See `navcore.foundation.out`.
+        """
+        kept = [*reads, *self.recordings()]
+        if self.writes == "folder":
+            require_folder(out, self.files, kept)
+        else:
+            require_file(out, self._command, kept, force=force)
+
+    def write(
+        self, answer: Answer, out: Path, reads: Iterable[PathLike] = (), *, force: bool = False
+    ) -> None:
+        """Write what ``--out`` asks for; see `require_free`."""
+        kept = [*reads, *self.recordings()]
+        texts = self.texts(answer)
+        if self.writes == "folder":
+            with placing(out, self.files, kept) as hidden:
+                for name, text in texts.items():
+                    (hidden / name).write_text(text, encoding="utf-8")
+        else:
+            (text,) = texts.values()
+            write_file(out, text, self._command, kept, force=force)
+
+    def texts(self, answer: Answer) -> dict[str, str]:
+        """Return what ``--out`` asks for: a text by the name of each of ``files``."""
         raise NotImplementedError
+
+    @property
+    def _command(self) -> str:
+        return str(vars(self)["id"])
+
+
+def _recordings(value: Any) -> list[str]:
+    """Recordings of a scenario or a study; none of anything else."""
+    from navcore.scenario import reads
+    from navcore.scenario.model import Scenario
+    from navcore.study import file
+    from navcore.study.model import Study
+
+    if isinstance(value, Scenario):
+        return reads.recordings(value)
+    return file.recordings(value) if isinstance(value, Study) else []
 
 
 def unless_stopped(cancelled: Cancelled | None) -> None:

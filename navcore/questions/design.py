@@ -1,11 +1,9 @@
 """Design: which methods meet the limits of a scenario, and with what probability."""
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from navcore.foundation.answers import Answer
-from navcore.foundation.out import require_own, writing
 from navcore.foundation.parameters import quantity
 from navcore.foundation.text import Text
 from navcore.questions.base import Cancelled, Progress, Question, option
@@ -14,8 +12,6 @@ from navcore.questions.fields import Over
 if TYPE_CHECKING:
     from navcore.design.judged import Designs
     from navcore.study.robust import Robust
-
-_FILES = ("design.json", "scenario.toml")
 
 
 class DesignQuestion(Question):
@@ -28,6 +24,7 @@ class DesignQuestion(Question):
     function: ClassVar[str] = "designs"
     stopped: ClassVar[str] = Text("Stopped: no design.")
     writes: ClassVar = "folder"
+    files: ClassVar = ("design.json", "scenario.toml")
     written: ClassVar[str] = Text("design.json and scenario.toml with these methods, best first")
     example: ClassVar[str] = """\
 >>> from navcore import designs, load
@@ -81,19 +78,11 @@ class DesignQuestion(Question):
             return designs(self.scenario, **given)
         return robust_designs(self.scenario, self.over, quantile=self.quantile, **given)
 
-    @classmethod
-    def require_free(cls, out: Path) -> None:
-        """Refuse a folder with files that this question does not write."""
-        require_own(out, _FILES)
-
-    def write(self, answer: Answer, out: Path) -> None:
-        """Write the document, and the scenario with these methods."""
+    def texts(self, answer: Answer) -> dict[str, str]:
+        """Return the document, and the scenario with these methods."""
         from navcore.scenario.file import to_toml
 
         methods = tuple(share.method for share in vars(answer)["methods"])
         changed = self.scenario.model_copy(update={"method": methods})
-        texts = json.dumps(answer.document(), indent=2), to_toml(changed)
-        with writing(out):
-            out.mkdir(parents=True, exist_ok=True)
-            for name, text in zip(_FILES, texts, strict=True):
-                (out / name).write_text(text + "\n", encoding="utf-8")
+        texts = json.dumps(answer.document(), indent=2) + "\n", to_toml(changed)
+        return dict(zip(self.files, texts, strict=True))

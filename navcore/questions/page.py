@@ -20,6 +20,9 @@ _ALL = {
 _LAST = (("--json", "prints one JSON document"), ("--quiet", "shows no progress bar"))
 
 
+_FORCE = "lets `--out` replace a file that the command has not written, or that was edited since"
+
+
 def section() -> str:
     """Text between the marks."""
     return "\n\n".join(("", *_parts(), ""))
@@ -43,6 +46,8 @@ def _parts() -> Iterator[str]:
             if question.writes
             else []
         )
+        if question.writes == "file":
+            rows.append(["`--force`", "", _FORCE])
         rows += [[f"`{flag}`", "", words] for flag, words in _LAST]
         yield markdown_table(["option", "default", "meaning"], rows)
 

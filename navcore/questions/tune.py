@@ -1,6 +1,5 @@
 """Tune: the setting of a method that makes an objective least while requirements are kept."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, model_validator
@@ -50,6 +49,7 @@ class TuneQuestion(Varying):
     )
     stopped: ClassVar[str] = Text("Stopped: there is no proposal.")
     writes: ClassVar = "file"
+    files: ClassVar = ("scenario.toml",)
     written: ClassVar[str] = Text("the scenario with the best setting")
     example: ClassVar[str] = """\
 >>> from navcore import tune
@@ -124,10 +124,8 @@ class TuneQuestion(Varying):
             return tune_over(self.scenario, self.over, self.objective, self.vary, self.require, **given)
         return tune(self.scenario, self.objective, self.vary, self.require, worst_of=self.worst_of, **given)
 
-    def write(self, answer: Answer, out: Path) -> None:
-        """Write the scenario with the best setting."""
-        from navcore.foundation.out import writing
+    def texts(self, answer: Answer) -> dict[str, str]:
+        """Return the scenario with the best setting."""
         from navcore.scenario.file import to_toml
 
-        with writing(out):
-            out.write_text(to_toml(vars(answer)["scenario"]), encoding="utf-8")
+        return {"scenario.toml": to_toml(vars(answer)["scenario"])}

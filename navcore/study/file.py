@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import copy
+import os
+from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.stage_cache import recorded_files
 from navcore.foundation.text import Text
 from navcore.scenario.file import apply_overrides, is_table, presets, read, read_toml, resolve_files
 from navcore.scenario.model import Scenario
@@ -34,7 +38,7 @@ def load(source: str) -> Study:
     """
     known = studies()
     path = known.get(source, Path(source))
-    if not path.exists():
+    if not os.path.lexists(path):
         allowed = Text("is neither a listed study nor a file; studies: {names}", names=", ".join(known))
         raise InputError(Fault(source, "", None, allowed))
     study = Study.parse(read_toml(path, source), source)
@@ -45,6 +49,34 @@ def load(source: str) -> Study:
         data = copy.deepcopy(study.scenario)
         resolve_files(data, path.parent)
     return study.model_copy(update={"scenario": data})
+
+
+def recordings(study: Study) -> list[str]:
+    """Return the paths of the recordings of a study's scenario and of their maps.
+
+    Returns
+    -------
+    list of str
+        And whatever text stands among the values of its factors, for it may name a recording; they need not
+        exist.
+    """
+    blocks = study.scenario.values() if isinstance(study.scenario, dict) else ()
+    recorded = [
+        file
+        for block in blocks
+        if isinstance(block, dict)
+        for file in recorded_files(SimpleNamespace(file=block.get("file"), map=block.get("map")))
+    ]
+    return recorded + [text for factor in study.factor for text in _texts(factor.values)]
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Texts within a value."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list | tuple):
+        for item in value.values() if isinstance(value, dict) else value:
+            yield from _texts(item)
 
 
 def scenario_data(study: Study, where: str) -> dict[str, Any]:

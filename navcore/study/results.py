@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
+import re
+import stat
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
-from navcore.foundation.kernel_files import replacing
-from navcore.foundation.out import refused, writing
+from navcore.foundation.inputs import read_bytes
+from navcore.foundation.out import HIDDEN, PathLike, refused, require_folder, whole, writing
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
 from navcore.scenario.file import names_files, scenario_hash
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 STUDY_FILE, RUNS_FILE, SUMMARY_FILE, PARTS = "study.toml", "runs.parquet", "summary.json", "parts"
+OUR_FILES = (STUDY_FILE, RUNS_FILE, SUMMARY_FILE)
+_PART = re.compile(r"(\d{12})-(\d{12})\.parquet")
+_LARGEST_STUDY_BYTES = 1 << 24
 _GROUP_ROWS = 65_536
 
 
@@ -38,16 +42,20 @@ class Folder:
         Of the folder.
     plan : Plan
         The study.
+    reads : iterable of path
+        Files that the command reads, which are never replaced.
     """
 
-    def __init__(self, path: Path, plan: Plan) -> None:
-        self.path, self._plan = path, plan
+    def __init__(self, path: Path, plan: Plan, reads: Iterable[PathLike] = ()) -> None:
+        self.path, self._plan, self._reads = path, plan, tuple(reads)
         self._parts = path / PARTS
         self._schema = schema(plan)
 
     @contextmanager
     def opened(self, resume: bool) -> Iterator[None]:
-        """Make, go on with or replace the folder, and keep other commands from it meanwhile.
+        """Make the folder, or go on with or replace the results in it; keep other studies from it meanwhile.
+
+        Files of other names are left alone.
 
         Parameters
         ----------
@@ -57,32 +65,43 @@ class Folder:
         Raises
         ------
         InputError
-            The folder holds something else, results of another study, unfinished results that are not to be
-            resumed, or is in use; or it cannot be written (disk full, read-only).
+            See `navcore.foundation.out.require_folder`; or the folder holds results of another study,
+            unfinished results that are not to be resumed, something else in the place of the parts, or is
+            in use; or it cannot be written (disk full, read-only).
         """
-        import fcntl
+        require_folder(self.path, OUR_FILES)
+        with self._held():
+            with writing(self.path):
+                self._claim(resume)
+            yield
 
+    @contextmanager
+    def _held(self) -> Iterator[None]:
+        """Make the folder, and hold it against other commands."""
         with writing(self.path):
             self.path.mkdir(parents=True, exist_ok=True)
             held = os.open(self.path, os.O_RDONLY)
-            try:
-                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                self._claim(resume)
-                yield
-            except BlockingIOError:
-                raise refused(self.path, Text("is in use by another command")) from None
-            finally:
-                os.close(held)
+        try:
+            self._lock(held)
+            yield
+        finally:
+            os.close(held)
+
+    def _lock(self, held: int) -> None:
+        import fcntl
+
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise refused(self.path, Text("is in use by another command")) from None
+        except OSError:  # a file system that knows no locks
+            return
 
     def _claim(self, resume: bool) -> None:
-        there = {entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")}
-        foreign = sorted(there - {STUDY_FILE, RUNS_FILE, SUMMARY_FILE, PARTS})
-        if foreign:
-            named = ", ".join(foreign[:3])
-            raise refused(self.path, Text("holds what no study wrote: {named}", named=named))
+        self._require_own_parts()
         text, study = _identity(self._plan), self.path / STUDY_FILE
         if resume and study.exists():
-            before = study.read_text("utf-8")
+            before = read_bytes(study, _LARGEST_STUDY_BYTES).decode("utf-8", errors="replace")
             if before != text:
                 allowed = Text(
                     "holds results of another study ({difference}): give the changed one a folder of its "
@@ -90,21 +109,48 @@ class Folder:
                     difference=_difference(before, text),
                 )
                 raise refused(self.path, allowed)
+            require_folder(self.path, (RUNS_FILE, SUMMARY_FILE), self._reads)
             if self.summary() is not None:
-                shutil.rmtree(self._parts, ignore_errors=True)
+                self._remove_parts()
                 return
         elif self.summary() is None and self.done():
             raise refused(self.path, Text("holds unfinished results: --resume goes on; or remove the folder"))
         else:
+            require_folder(self.path, OUR_FILES, self._reads)
             for name in (SUMMARY_FILE, RUNS_FILE):
                 (self.path / name).unlink(missing_ok=True)
-            shutil.rmtree(self._parts, ignore_errors=True)
-            self._parts.mkdir()
+            self._remove_parts()
+            self._parts.mkdir(exist_ok=True)
             with self._placing(STUDY_FILE) as file:
                 file.write(text.encode())
         self._parts.mkdir(exist_ok=True)
-        for half_written in self._parts.glob(".*"):
-            half_written.unlink()
+        self._remove_half_written()
+
+    def _require_own_parts(self) -> None:
+        """Refuse a folder of parts in which something else lies, for parts are removed from it."""
+        if not os.path.lexists(self._parts):
+            return
+        if not stat.S_ISDIR(os.lstat(self._parts).st_mode):
+            raise refused(self._parts, Text("is not a folder"))
+        entries = (entry.name for entry in self._parts.iterdir() if not entry.name.startswith("."))
+        foreign = sorted(name for name in entries if not _PART.fullmatch(name))
+        if foreign:
+            raise refused(
+                self._parts, Text("holds what no study wrote: {named}", named=", ".join(foreign[:3]))
+            )
+
+    def _remove_parts(self) -> None:
+        """Remove the parts, and their folder unless it holds anything else."""
+        if self._parts.is_dir():
+            self._remove_half_written()
+            for first, end in self.done():
+                self._part(first, end).unlink()
+            with suppress(OSError):
+                self._parts.rmdir()
+
+    def _remove_half_written(self) -> None:
+        for left in self._parts.glob(f"{HIDDEN}*"):
+            left.unlink()
 
     def summary(self) -> dict[str, Any] | None:
         """Return the summary of a complete study, all of whose runs are in ``runs.parquet``; else None."""
@@ -116,8 +162,8 @@ class Folder:
 
     def done(self) -> list[tuple[int, int]]:
         """Runs in the parts: ranges from a number to one before another, in order."""
-        names = (path.stem.split("-") for path in self._parts.glob("[0-9]*.parquet"))
-        return sorted((int(first), int(end)) for first, end in names)
+        names = map(_PART.fullmatch, os.listdir(self._parts) if self._parts.is_dir() else ())
+        return sorted((int(name[1]), int(name[2])) for name in names if name)
 
     def missing(self) -> list[tuple[int, int]]:
         """Runs that no part holds, as `done`."""
@@ -157,13 +203,13 @@ class Folder:
         with self._placing(SUMMARY_FILE) as file:
             file.write((json.dumps(summary, indent=2, allow_nan=False) + "\n").encode())
         if summary["status"] == "complete":
-            shutil.rmtree(self._parts, ignore_errors=True)
+            self._remove_parts()
 
     def _part(self, first: int, end: int) -> Path:
         return self._parts / f"{first:012d}-{end:012d}.parquet"
 
     def _keep(self, first: int, end: int, table: pa.Table) -> None:
-        with replacing(self._part(first, end)) as file:
+        with writing(self.path), whole(self._part(first, end)) as file:
             self._write(file, [table])
 
     def _grouped(self) -> Iterator[pa.Table]:
@@ -181,9 +227,9 @@ class Folder:
     @contextmanager
     def _placing(self, name: str) -> Iterator[IO[bytes]]:
         """Give a file that gets its name once complete; what a kill leaves of it lies with the parts."""
-        with replacing(self._parts / name) as file:
+        require_folder(self.path, [name], self._reads)
+        with writing(self.path), whole(self.path / name, self._parts) as file:
             yield file
-        os.replace(self._parts / name, self.path / name)
 
     def _write(self, file: IO[bytes], tables: Iterable[pa.Table]) -> None:
         import pyarrow.parquet as pq

@@ -144,23 +144,12 @@ def test_csv_and_parquet_hold_the_same_rows(tmp_path, capsys):
     assert str(table.schema.field("damped").type) == "int8"
 
 
-def test_a_folder_of_an_earlier_run_is_replaced_as_a_whole(tmp_path, capsys):
+def test_results_in_a_folder_are_replaced_by_those_of_the_next_run(tmp_path, capsys):
     folder = tmp_path / "out"
     for name in ("parquet", "csv"):
         assert main(["run", "zha-fast", *SHORT, "--out", str(folder), "--format", name]) == 0
     assert sorted(p.name for p in folder.iterdir()) == ["metrics.json", "scenario.toml", "timeseries.csv"]
     assert list(tmp_path.iterdir()) == [folder]
-
-
-def test_a_folder_with_other_files_is_refused_before_anything_is_run(tmp_path, capsys, monkeypatch):
-    (tmp_path / "thesis.tex").write_text("years of work")
-    (tmp_path / "metrics.json").write_text("old")
-    monkeypatch.setattr("navcore.engine.simulation.simulate", lambda *_: pytest.fail("was run"))
-    assert main(["run", "zha-fast", "--out", str(tmp_path)]) == 2
-    err = capsys.readouterr().err
-    assert err.count("\n") == 1
-    assert "thesis.tex" in err
-    assert (tmp_path / "metrics.json").read_text() == "old"
 
 
 @pytest.mark.parametrize("below", ["", "sub"])

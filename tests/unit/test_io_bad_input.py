@@ -1,18 +1,13 @@
 """Bad input of every kind is refused by name with a remedy, in bounded time."""
 
-import errno
 import gzip
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pyarrow
 import pytest
 from pyarrow import parquet
 
-from navcore.checks import map_guess
 from navcore.checks.file import check_log
 from navcore.checks.imu import check_mapped
 from navcore.foundation.errors import InputError
@@ -61,23 +56,6 @@ def test_a_map_names_the_column_that_is_missing_and_the_hour_that_is_left_out(tm
         (tmp_path / "m.toml").write_text(text.format(column))
         faults = check_mapped(tmp_path / "log.csv", tmp_path / "m.toml").faults
         assert wanted in " ".join(map(str, faults))
-
-
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS])
-def test_a_map_is_not_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
-    """A full disk, and a folder that cannot be written to."""
-
-    @contextmanager
-    def failing(path: Path) -> Iterator[Any]:
-        raise OSError(number, "no")
-        yield
-
-    (tmp_path / "log.csv").write_text(LOG)
-    (tmp_path / "m.toml").write_text("before")
-    monkeypatch.setattr(map_guess, "replacing", failing)
-    with pytest.raises(InputError, match="cannot be written"):
-        map_guess.write_map(str(tmp_path / "log.csv"), str(tmp_path / "m.toml"))
-    assert (tmp_path / "m.toml").read_text() == "before"
 
 
 def test_fixes_that_lie_years_apart_take_no_time(tmp_path: Path) -> None:

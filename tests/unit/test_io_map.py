@@ -227,4 +227,4 @@ def test_the_guess_of_a_file_that_is_refused_lists_its_columns(
     assert main(["check", str(table), "--write-map", str(target)]) == 2
     assert '#   "fahrt": 10,5, 10,6' in target.read_text()
     assert main(["check", str(table), "--write-map", str(tmp_path / "no" / "m.toml")]) == 2
-    assert "write_map" in capsys.readouterr().err
+    assert "--write-map" in capsys.readouterr().err

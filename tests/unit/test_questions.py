@@ -28,7 +28,7 @@ def test_the_command_has_the_fields_and_no_other_list(id: str) -> None:
     question = QUESTIONS[id]
     names = {one.name for one in dataclasses.fields(command_of(question))}
     own = {question.subject, *(one.name for one in question.options())}
-    assert own <= names and names - own <= {"set", "out", "json", "quiet"}
+    assert own <= names and names - own <= {"set", "out", "force", "json", "quiet"}
     assert ("out" in names) == bool(question.writes)
 
 

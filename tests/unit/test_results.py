@@ -8,10 +8,9 @@ import pytest
 
 from navcore.engine import results
 from navcore.engine.measures import metrics
-from navcore.engine.results import require_replaceable, timeseries, write_results
+from navcore.engine.results import timeseries, write_results
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.simulation import simulate
-from navcore.foundation.errors import InputError
 from navcore.scenario.file import load, scenario_hash
 from navcore.scenario.model import Scenario
 
@@ -28,7 +27,6 @@ def names(folder) -> list[str]:
 def test_the_current_folder_keeps_its_place(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     identity = tmp_path.stat().st_ino
-    (tmp_path / "timeseries.csv").write_text("old")
     write_results(run, ".")
     assert tmp_path.stat().st_ino == identity
     assert names(tmp_path) == ["metrics.json", "scenario.toml", "timeseries.parquet"]
@@ -41,56 +39,6 @@ def test_a_link_to_a_folder_stays_a_link(run, tmp_path):
     assert (tmp_path / "link").is_symlink()
     assert names(tmp_path) == ["link", "real"]
     assert names(tmp_path / "real") == ["metrics.json", "scenario.toml", "timeseries.csv"]
-
-
-def test_a_failed_exchange_puts_the_old_folder_back(run, tmp_path, monkeypatch):
-    folder = tmp_path / "out"
-    write_results(run, folder)
-    before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    rename = type(folder).rename
-
-    def refuse_new(self, target):
-        if ".new-" in self.name:
-            raise PermissionError(13, "Permission denied")
-        return rename(self, target)
-
-    monkeypatch.setattr(type(folder), "rename", refuse_new)
-    with pytest.raises(InputError, match="cannot be written: Permission denied"):
-        write_results(run, folder)
-    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
-    assert names(tmp_path) == ["out"]
-
-
-@pytest.mark.parametrize("make", ["folder of our name", "hidden file", "five files"])
-def test_whatever_no_run_wrote_is_named(make, tmp_path):
-    if make == "folder of our name":
-        (tmp_path / "metrics.json").mkdir()
-    for name in {"hidden file": [".git"], "five files": list("abcde")}.get(make, []):
-        (tmp_path / name).write_text("")
-    with pytest.raises(InputError) as refused:
-        require_replaceable(tmp_path)
-    said = str(refused.value)
-    assert {"folder of our name": "metrics.json", "hidden file": ".git", "five files": "a, b, c and 2 more"}[
-        make
-    ] in said
-
-
-def test_an_earlier_run_is_replaced_with_all_files_beside_it(run, tmp_path, monkeypatch):
-    folder = tmp_path / "out"
-    write_results(run, folder, "csv")
-    (folder / "notes.txt").write_text("stale")
-    write_results(run, folder, "parquet")
-    assert names(folder) == ["metrics.json", "scenario.toml", "timeseries.parquet"]
-    (folder / "notes.txt").write_text("mine")
-    monkeypatch.chdir(folder)
-    with pytest.raises(InputError, match="notes.txt"):
-        write_results(run, ".")
-    assert (folder / "notes.txt").read_text() == "mine"
-
-
-def test_nothing_and_an_empty_folder_may_be_taken(tmp_path):
-    require_replaceable(tmp_path / "missing")
-    require_replaceable(tmp_path)
 
 
 def test_our_files_are_those_that_are_written(run, tmp_path):

@@ -106,13 +106,8 @@ def test_complete_results_are_replaced_as_a_whole(study, tmp_path):
     assert len(stored(folder)) == 2
 
 
-def test_a_folder_that_is_not_a_studys_is_refused(study, tmp_path, capsys):
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "thesis.tex").touch()
-    assert "holds what no study wrote: thesis.tex" in refusal(
-        [study, "--out", str(tmp_path / "mine")], capsys
-    )
-    assert "File exists" in refusal([study, "--out", study], capsys)
+def test_a_folder_that_cannot_be_used_is_refused(study, tmp_path, capsys):
+    assert "exists and is not a folder" in refusal([study, "--out", study], capsys)
     (tmp_path / "used").mkdir()
     held = os.open(tmp_path / "used", os.O_RDONLY)
     fcntl.flock(held, fcntl.LOCK_EX)

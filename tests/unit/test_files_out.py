@@ -1,0 +1,438 @@
+"""What the commands write: their own names alone, whole or not at all, and never a file that they read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from navcore.foundation import out
+from navcore.foundation.errors import InputError
+from navcore.foundation.inputs import noting
+from navcore.foundation.out import placing, require_file, require_folder, signed, write_file, written_by
+from navcore.scenario.file import load
+from navcore.scenario.reads import recordings
+from navcore.study.file import load as load_study
+from navcore.study.file import recordings as of_study
+from schuler_bench.cli import main
+
+SHIP = """schema = 1
+[run]
+duration_h = 0.1
+[reference]
+kind = "log"
+noise_mps = 0.1
+[[requirement]]
+quantity = "tilt_max_arcsec"
+at_most = 30.0
+[[method]]
+name = "damped"
+damping = "external"
+network = { id = "unity2" }
+"""
+STUDY = 'schema = 1\nseeds = 1\nscenario = "ship.toml"\n'
+LOG = "utc,speed_kn\n" + "".join(f"2024-05-01T00:00:{t:02d}Z,5.{t}\n" for t in range(9))
+MAP = """time = { column = "utc", unit = "iso" }
+[quantity.speed]
+column = "speed_kn"
+unit = "kn"
+"""
+
+RUN = ["run", "ship.toml"]
+DESIGN = ["design", "ship.toml", "--as-set", "--seeds", "2"]
+RUN_STUDY = ["study", "study.toml", "--workers", "1"]
+TUNE = [
+    "tune",
+    "ship.toml",
+    "--objective",
+    "tilt_rms",
+    "--vary",
+    "method.0.network.zeta=0.3:1",
+    "--no-confirm",
+]
+ADAPT = ["adapt", "ship.toml", "--loop", "step=0.9", "--loop", "differences_kn=[0,3]"]
+CHECK = ["check", "log.csv"]
+
+
+def recorded(file: str, column_map: str) -> str:
+    """The ship with a recorded log."""
+    block = f'[reference]\nkind = "file"\nfile = "{file}"\nmap = "{column_map}"\n'
+    return SHIP.replace('[reference]\nkind = "log"\nnoise_mps = 0.1\n', block)
+
+
+FOLDERS = {
+    "run": (RUN, ("scenario.toml", "metrics.json", "timeseries.parquet")),
+    "design": (DESIGN, ("design.json", "scenario.toml")),
+    "study": (RUN_STUDY, ("study.toml", "runs.parquet", "summary.json")),
+}
+FILES = {"tune": (TUNE, "--out"), "adapt": (ADAPT, "--out"), "check": (CHECK, "--write-map")}
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of a user's own files, in which the commands are given."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in {"ship.toml": SHIP, "study.toml": STUDY, "log.csv": LOG, "notes.md": "years"}.items():
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Content of each file in a folder and below, where links lead."""
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def refusal(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """What a refused command says, in one line."""
+    capsys.readouterr()
+    assert main([*arguments, "--json"]) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and told.err.count("\n") == 1
+    return told.err
+
+
+# ---------------------------------------------------------------- folders
+
+
+@pytest.mark.parametrize("command", FOLDERS)
+def test_own_names_are_replaced_and_all_other_files_left(
+    command: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A scenario, a recording and notes lay beside an earlier result, and were gone after the next run."""
+    arguments, names = FOLDERS[command]
+    trial = here / "trial"
+    assert main([*arguments, "--out", "trial"]) == 0
+    assert {path.name for path in trial.iterdir()} == {*names}
+    mine = {"ship.toml": SHIP, "voyage.csv": LOG, "notes.md": "x", ".hidden": "x", "sub/deep.txt": "x"}
+    (trial / "sub").mkdir()
+    for name, text in mine.items():
+        (trial / name).write_text(text)
+    (trial / names[1]).write_text("from before")
+    assert main([*arguments, "--out", "trial/"]) == 0
+    held = contents(trial)
+    assert {name: held[name].decode() for name in mine} == mine
+    assert held.keys() == {*mine, *names}
+    assert held[names[1]] != b"from before"
+
+
+@pytest.mark.parametrize("command", FOLDERS)
+@pytest.mark.parametrize("there", ["folder", "link", "dead link", "pipe", "write-protected"])
+def test_what_is_no_file_of_ours_at_one_of_our_names_is_refused(
+    command: str, there: str, here: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arguments, names = FOLDERS[command]
+    (here / "trial").mkdir()
+    place = here / "trial" / names[-1]
+    target = here / "notes.md"
+    make: dict[str, Callable[[], Any]] = {
+        "folder": lambda: (place.mkdir(), (place / "mine.txt").write_text("x")),
+        "link": lambda: place.symlink_to(target),
+        "dead link": lambda: place.symlink_to(here / "nowhere"),
+        "pipe": lambda: os.mkfifo(place),
+        "write-protected": lambda: (place.write_text("kept"), place.chmod(0o444)),
+    }
+    make[there]()
+    before = contents(here)
+    told = refusal([*arguments, "--out", "trial"], capsys)
+    assert f"trial/{names[-1]}'" in told
+    assert contents(here) == before and os.path.lexists(place)
+    assert [path.name for path in (here / "trial").iterdir()] == [names[-1]]
+
+
+@pytest.mark.parametrize("given", ["file", "link", "hard link", "far path"])
+def test_a_run_never_replaces_its_own_scenario(
+    given: str, here: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``schuler run scenario.toml --out .`` replaced the user's file, comments and all."""
+    (here / "scenario.toml").write_text(f"# mine\n{SHIP}")
+    name = "scenario.toml"
+    if given == "link":
+        (here / "elsewhere").mkdir()
+        name = "elsewhere/ship.toml"
+        (here / name).symlink_to(here / "scenario.toml")
+    elif given == "hard link":
+        (here / "elsewhere").mkdir()
+        name = "elsewhere/ship.toml"
+        os.link(here / "scenario.toml", here / name)
+    elif given == "far path":
+        name = f"../{here.name}/./scenario.toml"
+    monkeypatch.setattr("navcore.engine.simulation.simulate", lambda *_: pytest.fail("was run"))
+    before = contents(here)
+    for folder in (".", str(here), "./", f"../{here.name}"):
+        assert "is read by this command" in refusal(["run", name, "--out", folder], capsys)
+        assert contents(here) == before
+
+
+def test_a_run_never_replaces_its_recordings_and_maps(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "metrics.json").write_text(LOG)
+    for file, column_map in (("metrics.json", "map.toml"), ("log.csv", "metrics.json")):
+        (here / "ship.toml").write_text(recorded(file, column_map))
+        assert "is read by this command" in refusal([*RUN, "--out", "."], capsys)
+
+
+def test_a_recording_is_not_taken_for_the_series_of_an_earlier_run(here: Path) -> None:
+    header = "method,t_s,phi_e_rad,phi_n_rad,phi_u_rad,dve_mps,dvn_mps,dlat_m,dlon_m\n"
+    (here / "timeseries.csv").write_text(header)
+    (here / "ship.toml").write_text(SHIP)
+    assert main([*RUN, "--set", "reference.map=timeseries.csv", "--out", "."]) == 0
+    assert (here / "timeseries.csv").read_text() == header
+
+
+def test_what_a_scenario_and_a_study_read_is_listed(here: Path) -> None:
+    (here / "ship.toml").write_text(SHIP.replace("[reference]", '[reference]\nfile = ["log.csv", "b.csv"]'))
+    factor = '[[factor]]\nfield = ["reference.file", "reference.map"]\nvalues = [["c.csv", "m.toml"]]\n'
+    (here / "study.toml").write_text(STUDY + factor)
+    with noting() as read:
+        scenario = load("ship.toml")
+    assert [Path(file).name for file in read] == ["ship.toml"]
+    recorded = {"log.csv", "log.csv.map.toml", "b.csv", "b.csv.map.toml"}
+    assert {Path(file).name for file in recordings(scenario)} == recorded
+    with noting() as read:
+        study = load_study("study.toml")
+    assert {Path(file).name for file in read} == {"study.toml", "ship.toml"}
+    assert {Path(file).name for file in of_study(study)} == {*recorded, "c.csv", "m.toml"}
+    with noting() as read:
+        load("zha-fast")
+    assert [Path(file).name for file in read] == ["zha-fast.toml"]
+
+
+def test_the_series_of_an_earlier_run_goes_and_a_users_file_of_its_name_stays(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for format in ("parquet", "csv", "parquet"):
+        assert main([*RUN, "--out", "trial", "--format", format]) == 0
+        assert len([*(here / "trial").glob("timeseries.*")]) == 1
+    (here / "trial" / "timeseries.csv").write_text("hour,swell\n1,2\n")
+    assert main([*RUN, "--out", "trial"]) == 0
+    assert (here / "trial" / "timeseries.csv").read_text() == "hour,swell\n1,2\n"
+
+
+@pytest.mark.parametrize("place", ["notes.md", "notes.md/sub", "dead", "loop"])
+def test_what_is_no_folder_is_refused(place: str, here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "dead").symlink_to(here / "nowhere")
+    (here / "loop").symlink_to(here / "loop")
+    before = contents(here)
+    for arguments, _ in FOLDERS.values():
+        assert refusal([*arguments, "--out", place], capsys).startswith("--out = ")
+        assert contents(here) == before
+
+
+def test_a_study_is_gone_on_with_from_its_own_folder(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """``study.toml`` in the folder is what the command reads and what it would write."""
+    assert main([*RUN_STUDY, "--out", "results"]) == 0
+    again = ["study", "results/study.toml", "--out", "results"]
+    assert "is read by this command" in refusal(again, capsys)
+    assert main([*again, "--resume"]) == 0
+    assert "is read by this command" in refusal([*RUN_STUDY, "--out", "."], capsys)
+
+
+@pytest.mark.parametrize("mine", ["gear.step", "2024-05.parquet"])
+def test_a_folder_named_parts_is_kept(mine: str, here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "results" / "parts").mkdir(parents=True)
+    (here / "results" / "parts" / mine).write_text("x")
+    told = refusal([*RUN_STUDY, "--out", "results"], capsys)
+    assert f"holds what no study wrote: {mine}" in told
+    assert (here / "results" / "parts" / mine).read_text() == "x"
+
+
+def test_a_folder_of_parts_is_never_a_link(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "mine").mkdir()
+    (here / "mine" / f"{0:012d}-{1:012d}.parquet").write_text("x")
+    (here / "results").mkdir()
+    (here / "results" / "parts").symlink_to(here / "mine")
+    assert "parts': is not a folder" in refusal([*RUN_STUDY, "--out", "results"], capsys)
+    assert len([*(here / "mine").iterdir()]) == 1
+
+
+# ---------------------------------------------------------------- the mechanism of folders
+
+
+def fill(hidden: Path, text: str) -> None:
+    for name in ("a.json", "b.json"):
+        (hidden / name).write_text(text)
+
+
+def test_all_files_take_their_names_or_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("a.json", "b.json")
+    with placing(tmp_path / "new" / "out", names) as hidden:
+        fill(hidden, "first")
+        assert not (tmp_path / "new" / "out" / "a.json").exists()
+    folder = tmp_path / "new" / "out"
+    replace = os.replace
+
+    def full(source: Any, target: Any) -> None:
+        if Path(target).name == "b.json" and ".schuler-" in str(source) and "earlier" not in str(source):
+            raise OSError(28, "No space left on device")
+        replace(source, target)
+
+    monkeypatch.setattr(out.os, "replace", full)
+    with (
+        pytest.raises(InputError, match="cannot be written: No space left"),
+        placing(folder, names) as hidden,
+    ):
+        fill(hidden, "second")
+    assert contents(folder) == {"a.json": b"first", "b.json": b"first"}
+    with pytest.raises(InputError, match="No space"), placing(tmp_path / "none", names) as hidden:
+        raise OSError(28, "No space left on device")
+    assert not (tmp_path / "none").exists()
+
+
+def test_what_a_kill_has_left_is_removed_and_what_is_in_use_is_not(tmp_path: Path) -> None:
+    (tmp_path / f"{out.HIDDEN}dead").mkdir()
+    (tmp_path / f"{out.HIDDEN}dead" / "a.json").write_text("half")
+    with placing(tmp_path, ("a.json", "b.json")) as first:
+        fill(first, "first")
+        with placing(tmp_path, ("a.json", "b.json")) as second:
+            fill(second, "second")
+        assert first.is_dir()
+    assert contents(tmp_path) == {"a.json": b"first", "b.json": b"first"}
+    assert [path.name for path in sorted(tmp_path.iterdir())] == ["a.json", "b.json"]
+
+
+def test_what_comes_into_the_way_meanwhile_is_left(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is a folder"), placing(tmp_path, ("a.json", "b.json")) as hidden:
+        fill(hidden, "x")
+        (tmp_path / "b.json").mkdir()
+    assert [path.name for path in tmp_path.iterdir()] == ["b.json"]
+
+
+def test_files_have_the_rights_that_the_user_gives(tmp_path: Path) -> None:
+    before = os.umask(0o077)
+    try:
+        with placing(tmp_path / "out", ("a.json", "b.json")) as hidden:
+            fill(hidden, "x")
+        write_file(tmp_path / "best.toml", "x = 1\n", "tune")
+    finally:
+        os.umask(before)
+    for path in (tmp_path / "out" / "a.json", tmp_path / "best.toml"):
+        assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Asked of the system, which also knows of disks that are mounted for reading."""
+    (tmp_path / "mine").mkdir()
+    monkeypatch.setattr(out.os, "access", lambda path, mode: Path(path) != tmp_path / "mine")
+    for ask in (
+        lambda: require_folder(tmp_path / "mine", ["a"]),
+        lambda: require_folder(tmp_path / "mine" / "x" / "y", ["a"]),
+        lambda: require_file(tmp_path / "mine" / "a.toml", "tune"),
+    ):
+        with pytest.raises(InputError, match="cannot be written: .*mine is write-protected"):
+            ask()
+    require_folder(tmp_path / "other", ["a"])
+
+
+# ---------------------------------------------------------------- single files
+
+
+@pytest.fixture(params=FILES)
+def writer(request: pytest.FixtureRequest) -> Iterator[tuple[str, list[str], str]]:
+    """Name of a command that writes one file, its words, and the option that names the file."""
+    arguments, option = FILES[request.param]
+    yield request.param, arguments, option
+
+
+def test_only_its_own_unedited_output_is_replaced(
+    writer: tuple[str, list[str], str], here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Notes, a scenario, and a map that had been edited were lost to the next run of the command."""
+    command, arguments, option = writer
+    call, file = [*arguments, option, "best.toml"], here / "best.toml"
+    assert main(call) == 0
+    first = file.read_text()
+    assert written_by(command, file)
+    assert main(call) == 0
+    assert file.read_text() == first
+    for text in (f"{first}# my note\n", "years of work", ""):
+        file.write_text(text)
+        told = refusal(call, capsys)
+        assert told.startswith(f"{option} = 'best.toml': is there already") and "--force" in told
+        assert file.read_text() == text
+        assert main([*call, "--force"]) == 0
+        assert file.read_text() == first
+    other = "tune" if command == "adapt" else "adapt"
+    file.write_text(signed("x = 1\n", other))
+    assert "is there already" in refusal(call, capsys)
+
+
+def test_its_own_input_is_not_replaced_even_with_force(
+    writer: tuple[str, list[str], str], here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, arguments, option = writer
+    source = here / arguments[1]
+    os.link(source, here / "hard")
+    (here / "soft").symlink_to(source)
+    before = contents(here)
+    for name in (arguments[1], f"./{arguments[1]}", str(source), "hard", "soft", f"../{here.name}/hard"):
+        for force in ([], ["--force"]):
+            told = refusal([*arguments, option, name, *force], capsys)
+            assert "is read by this command" in told or "is a link" in told
+    assert contents(here) == before
+
+
+@pytest.mark.parametrize("place", [".", "sub", "pipe", "dead", "notes.md/best.toml", "no/best.toml"])
+def test_what_is_no_place_for_a_file_is_refused(
+    place: str, writer: tuple[str, list[str], str], here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, arguments, option = writer
+    (here / "sub").mkdir()
+    os.mkfifo(here / "pipe")
+    (here / "dead").symlink_to(here / "nowhere")
+    for force in ([], ["--force"]):
+        assert refusal([*arguments, option, place, *force], capsys).startswith(f"{option} = ")
+    assert not [*(here / "sub").iterdir()]
+
+
+def test_all_that_a_search_reads_is_kept(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "other.toml").write_text(SHIP)
+    for more, kept in (("--worst-of", "other.toml"), ("--over", "study.toml"), ("--over", "ship.toml")):
+        given = "study.toml" if kept == "ship.toml" else kept
+        told = refusal([*TUNE, more, given, "--out", kept, "--force"], capsys)
+        assert "is read by this command" in told
+    (here / "design").mkdir()
+    os.link(here / "study.toml", here / "design" / "design.json")
+    told = refusal([*DESIGN, "--over", "study.toml", "--out", "design"], capsys)
+    assert "is read by this command" in told
+    assert contents(here / "design") == {"design.json": STUDY.encode()}
+
+
+def test_a_full_disk_leaves_the_earlier_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "best.toml"
+    write_file(target, "x = 1\n", "tune")
+    before = target.read_bytes()
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(out.os, "fsync", full)
+    with pytest.raises(InputError, match="--out = .*: cannot be written: No space left on device"):
+        write_file(target, "x = 2\n", "tune")
+    assert contents(tmp_path) == {"best.toml": before}
+
+
+def test_a_file_is_known_by_a_comment_of_its_own_format(tmp_path: Path) -> None:
+    page = tmp_path / "report.html"
+    page.write_text(f"<!DOCTYPE html>\n{signed('', 'report', '<!-- {} -->')}<p>text</p>\n")
+    assert not written_by("report", page)  # the digest is of all other lines
+    write_file(tmp_path / "page.html", "<p>text</p>\n", "report", comment="<!-- {} -->")
+    assert written_by("report", tmp_path / "page.html")
+    assert not written_by("export", tmp_path / "page.html")
+
+
+def test_names_differ_by_the_file_system_alone(tmp_path: Path) -> None:
+    """``Scenario.toml`` is the run's own file only where the file system does not tell letters apart."""
+    (tmp_path / "Scenario.toml").write_text("x")
+    same = (tmp_path / "scenario.toml").exists()
+    try:
+        require_folder(tmp_path, ["scenario.toml"], [tmp_path / "Scenario.toml"])
+    except InputError:
+        assert same
+    else:
+        assert not same
+    require_file(tmp_path / "new.toml", "tune", ["a\0b", "x" * 5000])
