@@ -3,14 +3,10 @@
 Exit codes: 0 done; 2 the input is wrong (one line per fault on stderr); 3 the run was stopped or diverged.
 """
 
-import sys
 from collections.abc import Sequence
 
-from navcore.foundation.cores import one_blas_thread
-from navcore.foundation.errors import InputError, StoppedError, UnstableError
-from schuler_bench.cli.terminal import finish, prepare_streams, say
-
-DONE, WRONG_INPUT, STOPPED = 0, 2, 3
+from schuler_bench.cli.codes import STOPPED, WRONG_INPUT
+from schuler_bench.cli.installed import foreign_navcore, missing, tell
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -24,21 +20,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        The exit code. Faults of the input are printed, never raised.
+        The exit code. Faults of the input are printed, never raised; so is a package that cannot be loaded.
     """
-    prepare_streams()
-    one_blas_thread()
+    if complaint := foreign_navcore():
+        tell(complaint)
+        return WRONG_INPUT
     try:
-        # Only now: a Ctrl-C while the commands are imported is no traceback either.
-        from schuler_bench.cli.parse import parse
+        # Only now: without navcore or a package that it needs, not even this can be imported.
+        from schuler_bench.cli.carried_out import carried_out
 
-        command = parse(sys.argv[1:] if arguments is None else arguments)
-        code = DONE if command is None else command.execute()
-    except InputError as error:
-        for fault in error.faults:
-            say(str(fault))
-        code = STOPPED if isinstance(error, UnstableError | StoppedError) else WRONG_INPUT
+        return carried_out(arguments)
+    except ImportError as error:
+        tell(missing(error))
+        return WRONG_INPUT
     except KeyboardInterrupt:
-        say("stopped")
-        code = STOPPED
-    return code if finish() else WRONG_INPUT
+        tell("stopped")
+        return STOPPED

@@ -9,6 +9,7 @@ The package ``distributed`` is an extra, ``schuler-bench[cluster]``, imported on
 from __future__ import annotations
 
 import importlib.util
+import ipaddress
 import logging
 import re
 import threading
@@ -25,7 +26,8 @@ from schuler_bench.jobs.worker import ElsewhereLost
 if TYPE_CHECKING:
     from distributed import Client
 
-_ADDRESS = re.compile(r"(tcp|tls)://[^\s/:@]+:\d{1,5}|(tcp|tls)://\[[0-9a-fA-F:]+\]:\d{1,5}")
+_ADDRESS = re.compile(r"(?:tcp|tls)://(?:([^\s/:@\[\]]+)|\[([0-9a-fA-F:]+)\]):(\d{1,5})")
+_LARGEST_PORT = 65535
 _CONNECT_S, _ANSWER_S = 10.0, 10.0
 _LOOK_S, _AGAIN_S, _POLL_S = 2.0, 15.0, 0.05
 """Between two looks: at a cluster that answers, at one that does not, at jobs that are under way there."""
@@ -45,6 +47,8 @@ class Cluster:
     ----------
     address : str
         ``tcp://HOST:PORT`` or ``tls://HOST:PORT`` of its scheduler.
+    otherwise : str
+        What the log says is done while it does not answer; empty: the caller says it.
 
     Raises
     ------
@@ -52,9 +56,9 @@ class Cluster:
         As `check_address`.
     """
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, otherwise: str = "heavy jobs are done here") -> None:
         check_address(address)
-        self.address = address
+        self.address, self._otherwise = address, otherwise
         self._client: Client | None = None
         self._fitting: dict[str, int] = {}
         self._passed_over: dict[str, str] = {}
@@ -274,8 +278,10 @@ class Cluster:
         before, self._told = self._told, why or "answers"
         if self._told == before or self._closed.is_set():
             return
+        if not self._otherwise:
+            return
         if why:
-            _log.warning("the Dask cluster %s %s: heavy jobs are done here", self.address, why)
+            _log.warning("the Dask cluster %s %s: %s", self.address, why, self._otherwise)
         else:
             _log.warning("the Dask cluster %s answers: heavy jobs go there", self.address)
 
@@ -301,12 +307,27 @@ def check_address(address: str | None, option: str = "--cluster", command: str =
     """
     if address is None:
         return
-    if not _ADDRESS.fullmatch(address):
+    if not _is_address(address):
         allowed = "must be tcp://HOST:PORT or tls://HOST:PORT, the address of a Dask scheduler"
         raise InputError([Fault(command, option, address, allowed)])
     if importlib.util.find_spec("distributed") is None:
         allowed = "needs the package distributed: pip install 'schuler-bench[cluster]'"
         raise InputError([Fault(command, option, address, allowed)])
+
+
+def _is_address(text: str) -> bool:
+    """Whether a text can be the address of a scheduler: a name or number of a machine, and a port."""
+    parts = _ADDRESS.fullmatch(text)
+    if parts is None or not 1 <= int(parts[3]) <= _LARGEST_PORT:
+        return False
+    try:
+        if parts[2]:
+            ipaddress.IPv6Address(parts[2])
+        else:
+            parts[1].encode("idna")  # what every look-up of a name begins with
+    except ValueError:
+        return False
+    return True
 
 
 def _let_go(client: Client, futures: Sequence[Any]) -> None:

@@ -84,7 +84,7 @@ def study_cluster(address: str, plan: Plan) -> Iterator[StudyCluster]:
     if any(_recordings(plan)):
         allowed = "cannot run a study of recordings, which lie on this machine: run it without --scheduler"
         raise InputError(Fault("study", OPTION, address, allowed))
-    cluster = Cluster(address)
+    cluster = Cluster(address, otherwise="")
     try:
         if not _waited(lambda: cluster.ready or cluster.lost, lambda: False, _CONNECT_S) or not cluster.ready:
             raise _unreachable(address, cluster.trouble)
