@@ -103,9 +103,10 @@ def _annotation(one: Option) -> Any:
     if one.kind == "flag":
         return Annotated[bool, arg(help=one.help)]
     plain: Any = {"whole": int, "number": float, "text": str}.get(one.kind) or Literal[one.choices]
+    words = f"{one.help} One of {', '.join(one.choices)}." if one.choices else one.help
     if one.many:
-        return UseAppendAction[_with(tuple[plain, ...], one.metavar, one.help)]
-    return _with(plain | None if one.default is None else plain, one.metavar, one.help)
+        return UseAppendAction[_with(tuple[plain, ...], one.metavar, words)]
+    return _with(plain | None if one.default is None else plain, one.metavar, words)
 
 
 def _default(one: Option) -> Any:
