@@ -17,6 +17,7 @@ from schuler_bench.jobs.words import what_failed
 from schuler_bench.languages import LANGUAGE_SCRIPTS
 from schuler_bench.logs import begin_logging
 from schuler_bench.memory import GiveBack, bound_arenas, collect_seldom
+from schuler_bench.session.keeping import NO_HOME, Keeping, NotKept
 from schuler_bench.views import VIEWS, load, scripts
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from schuler_bench.http.metrics import Metrics
     from schuler_bench.http.server import DashboardServer, Inner
     from schuler_bench.session.sessions import Sessions
+    from schuler_bench.session.store import Store
     from schuler_bench.shell.page import Page
 
 _STATIC = Path(__file__).parent / "shell" / "static"
@@ -83,10 +85,16 @@ class Dashboard:
         Folder in which sessions outlive the server; None: they do not.
     views : sequence of str
         Packages of the views, in the order of their tabs.
+
+    Attributes
+    ----------
+    keeping : Keeping
+        Whether sessions are kept at present.
     """
 
     def __init__(self, state: Path | None = None, views: Sequence[str] = VIEWS) -> None:
         self._state, self._views = state, views
+        self.keeping = Keeping()
         self._memory = GiveBack(self._forget)
         self._pages: dict[int, Page] = {}
         self._lock = threading.Lock()
@@ -95,10 +103,19 @@ class Dashboard:
     def sessions(self) -> Sessions:
         """All sessions; made with the first page."""
         from schuler_bench.session.sessions import Sessions
+
+        return Sessions(
+            store=self.store,
+            on_answer=lambda seconds: self.metrics.answers.observe(seconds),
+            keeping=self.keeping,
+        )
+
+    @cached_property
+    def store(self) -> Store | None:
+        """Where sessions are kept; None: nowhere, and `keeping` says why."""
         from schuler_bench.session.store import open_store
 
-        store = None if self._state is None else open_store(self._state)
-        return Sessions(store=store, on_answer=lambda seconds: self.metrics.answers.observe(seconds))
+        return None if self._state is None else open_store(self._state, self.keeping)
 
     @cached_property
     def metrics(self) -> Metrics:
@@ -134,6 +151,8 @@ class Dashboard:
 
     def _warm_up(self, prepare: Callable[[], None], failed: Callable[[str], None]) -> None:
         try:
+            with self._lock:
+                _ = self.store  # the first thing that is said: whether anything is kept
             prepare()
             import schuler_bench.shell.page  # noqa: F401
             from navcore.engine.simulation import simulate
@@ -188,6 +207,8 @@ class Dashboard:
         helper.stop()
         if "sessions" in self.__dict__:  # made with the first page
             self.sessions.close()
+        elif (store := self.__dict__.get("store")) is not None:
+            store.close()
 
 
 def open_dashboard(
@@ -245,8 +266,17 @@ def open_dashboard(
     )
     # No axes cross in the middle of the map; they belong to the server's scene.
     server.viser.scene.world_axes.visible = False
+    dashboard.keeping.watch(
+        lambda fault: server.keeps_nothing(fault and (str(fault.reason), str(fault.remedy)))
+    )
     dashboard.warm_up(server.prepare, server.fail)
     return server, dashboard
+
+
+def _say_whether_kept(fault: NotKept | None) -> None:
+    """Tell whoever has started the server, on the terminal."""
+    said = "sessions are kept again" if fault is None else f"nothing is kept: {fault.reason}. {fault.remedy}"
+    print(f"Schuler Bench: {said}", flush=True)
 
 
 def link_with(url: str, token: str | None) -> str:
@@ -298,6 +328,9 @@ def serve(
     use_cluster(cluster)
     link = link_with(server.url, token)
     print(f"Schuler Bench: {link if show_token else server.url}  (Ctrl+C ends it)", flush=True)
+    dashboard.keeping.watch(_say_whether_kept)
+    if state is None:
+        dashboard.keeping.becomes(NO_HOME)
     if open_browser:
         import webbrowser
 

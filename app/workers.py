@@ -29,7 +29,6 @@ from schuler_bench.logs import begin_logging
 from schuler_bench.memory import bound_arenas
 from schuler_bench.session.store import (
     CLAIMED,
-    NO_HOME,
     checked_folder,
     claim,
     default_folder,
@@ -44,6 +43,7 @@ MOST_WORKERS = 64
 _LOOK_S = 0.2
 _AGAIN_S = 1.0
 _END_S = 3.0
+_NO_HOME = "there is no home folder: set XDG_STATE_HOME"
 _PLACES, _FEWEST_PLACES = 96, 8
 """Open pages of all workers together, and of each at least: sessions do not fall evenly on the workers."""
 _log = logging.getLogger("schuler.workers")
@@ -208,7 +208,7 @@ async def _serve(front: Front, listener: socket.socket, greeting: str) -> None:
 def _claimed_folder(count: int) -> Iterator[None]:
     folder = checked_folder()
     if folder is None:  # workers must sign the addresses of sessions with the same key
-        raise InputError([Fault("serve", "--workers", count, NO_HOME)])
+        raise InputError([Fault("serve", "--workers", count, _NO_HOME)])
     session_key(folder)
     try:
         claimed = claim(folder)

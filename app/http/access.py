@@ -271,9 +271,21 @@ def answer_headers(length: int, content_type: str) -> dict[str, str]:
     }
 
 
-def health(fault: str = "") -> str:
-    """Answer to ``/healthz``, JSON; with what keeps the server from its work, if anything does."""
-    state = {"status": "failed", "reason": fault} if fault else {"status": "ok"}
+def health(fault: str = "", unkept: tuple[str, str] | None = None) -> str:
+    """Answer to ``/healthz``, JSON.
+
+    Parameters
+    ----------
+    fault : str
+        What keeps the server from its work; empty: nothing.
+    unkept : (str, str), optional
+        Why it works, but keeps nothing, and what can be done.
+    """
+    state = {"status": "ok"}
+    if fault:
+        state = {"status": "failed", "reason": fault}
+    elif unkept is not None:
+        state = {"status": "nothing is kept", "reason": unkept[0], "remedy": unkept[1]}
     return json.dumps({**state, "version": __version__})
 
 

@@ -63,6 +63,9 @@ class DashboardServer:
         Makes the page's files before they are asked for; from any thread.
     fail : callable
         ``fail(reason)`` lets ``/healthz`` fail from now on; from any thread.
+    keeps_nothing : callable
+        ``keeps_nothing((reason, remedy))`` lets ``/healthz`` say so, until it is called with None; from any
+        thread.
     """
 
     viser: viser.ViserServer
@@ -71,6 +74,7 @@ class DashboardServer:
     url: str
     prepare: Callable[[], None]
     fail: Callable[[str], None]
+    keeps_nothing: Callable[[tuple[str, str] | None], None]
     _callbacks: ThreadPoolExecutor
     _stopping: threading.Lock = field(default_factory=threading.Lock)
     _stopped: bool = False
@@ -181,4 +185,5 @@ def start(
     named_host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
     address = f"http://{authority(named_host, bound_port)}/"
     site = running.site
-    return DashboardServer(running.viser, host, bound_port, address, site.prepare, site.fail, callbacks)
+    told = site.prepare, site.fail, site.keeps_nothing
+    return DashboardServer(running.viser, host, bound_port, address, *told, callbacks)

@@ -60,6 +60,8 @@ class Site:
         Gives the figures for ``/metrics``; None: there are none.
     fault : str
         What keeps the server from its work, for ``/healthz``; without a place on the server.
+    unkept : (str, str) or None
+        Why nothing is kept, and what can be done, likewise.
     """
 
     access: Access
@@ -70,6 +72,7 @@ class Site:
     forwarded: bool = False
     metrics: Callable[[], bytes] | None = None
     fault: str = ""
+    unkept: tuple[str, str] | None = None
     ready: threading.Event = field(default_factory=threading.Event)
     _page: Page | None = None
     _loading: asyncio.Lock = field(default_factory=asyncio.Lock)
@@ -88,7 +91,7 @@ class Site:
             return _refuse(refusal)
         if path == "/healthz":
             status = HTTPStatus.SERVICE_UNAVAILABLE if self.fault else HTTPStatus.OK
-            return _respond(status, health(self.fault), "application/json")
+            return _respond(status, health(self.fault, self.unkept), "application/json")
         websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
         pairs = parse_qsl(query, keep_blank_values=True)
         tokens = [] if websocket else [value for name, value in pairs if name == "token"]
@@ -183,6 +186,10 @@ class Site:
     def fail(self, fault: str) -> None:
         """Let ``/healthz`` fail from now on; from any thread."""
         self.fault = fault
+
+    def keeps_nothing(self, unkept: tuple[str, str] | None) -> None:
+        """Let ``/healthz`` say that nothing is kept, or (None) no longer so; from any thread."""
+        self.unkept = unkept
 
     def prepare(self) -> None:
         """Make the page and compress its files before they are asked for; from any thread."""

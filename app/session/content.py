@@ -2,12 +2,13 @@
 
 import hashlib
 import os
-import time
+from collections.abc import Iterable
 from pathlib import Path
 
 from schuler_bench.session.folder import CONTENT, opened, temporary_name
 
-_UNLINKED_S = 3600.0
+UNLINKED_S = 3600.0
+"""So long a server must have served since no session links to a content."""
 
 
 class Contents:
@@ -49,8 +50,8 @@ class Contents:
         except OSError:
             return 0
 
-    def remove_unused(self) -> None:
-        """Remove the contents that no session links to any more; nothing of another name, or elsewhere.
+    def unused(self) -> set[str]:
+        """Names of the contents that no session links to; nothing of another name, or elsewhere.
 
         Raises
         ------
@@ -59,8 +60,17 @@ class Contents:
         """
         try:
             with opened(self.folder) as kept:
-                for name, state in kept.files(CONTENT.fullmatch).items():
-                    if state.st_nlink == 1 and time.time() - state.st_ctime > _UNLINKED_S:
-                        kept.remove(name, f"content {name}, which no session uses any more")
+                return {name for name, state in kept.files(CONTENT.fullmatch).items() if state.st_nlink == 1}
         except FileNotFoundError:
+            return set()
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Remove contents that still no session links to; raises OSError as `unused`."""
+        names = list(names)
+        if not names:
             return
+        with opened(self.folder) as kept:
+            for name in names:
+                state = kept.file(name)
+                if state is not None and state.st_nlink == 1:
+                    kept.remove(name, f"content {name}, which no session uses any more")

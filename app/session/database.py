@@ -1,41 +1,58 @@
-"""The documents of sessions and shared states in one SQLite file, and what may be in it."""
+"""The documents of sessions and shared states in one SQLite file; damage of it is put aside."""
 
 import json
-import logging
 import os
 import sqlite3
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from schuler_bench.session.folder import opened
+from schuler_bench.session import served
+from schuler_bench.session.database_file import (
+    DamagedError,
+    as_os_error,
+    begin_anew,
+    beside,
+    check,
+    close_moved,
+    mend_rows,
+    open_checked,
+    rescued,
+    take_over,
+    unless_of_the_machine,
+)
+from schuler_bench.session.folder import Folder, alone, opened
+from schuler_bench.session.salvage import NAME
 
-NAME = "sessions.sqlite"
-_ENDINGS = ("-wal", "-shm", "-journal")
-"""Of the files that SQLite keeps beside it."""
-_SCHEMA = 1
-_BUSY_S = 5.0
-_TABLES = """
-CREATE TABLE IF NOT EXISTS document (
-    id TEXT PRIMARY KEY,
-    shared_by TEXT,
-    used_s REAL NOT NULL,
-    content BLOB NOT NULL
-) WITHOUT ROWID;
-CREATE INDEX IF NOT EXISTS document_used ON document (used_s);
-CREATE INDEX IF NOT EXISTS document_shared ON document (shared_by);
-"""
-_log = logging.getLogger("schuler.store")
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Aside:
+    """A document that could not be read, or not wholly, as it was.
+
+    Attributes
+    ----------
+    number : int
+        By which it is found.
+    why : str
+        What is wrong with it.
+    """
+
+    number: int
+    why: str
 
 
 class Database:
     """The file, opened for several processes and several threads of this one.
 
     A change is whole or not there at all, also when the process is killed in the middle of it (write-ahead
-    log).
+    log). A file that is damaged, or of a newer version, is moved to ``sessions.broken-N`` or
+    ``sessions.newer-N``, as soon as that is noticed, and every document that can be read in it is taken over.
 
     Parameters
     ----------
@@ -50,35 +67,40 @@ class Database:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / NAME
-        self._lock = threading.Lock()
-        with _as_os_error():
-            try:
-                self._connection = self._open()
-            except sqlite3.DatabaseError as error:
-                if isinstance(error, sqlite3.OperationalError):
-                    raise
-                aside = self.path.with_suffix(f".broken-{int(time.time())}")
-                _log.warning("%s cannot be read (%s) and is put aside as %s", NAME, error, aside.name)
-                self.path.replace(aside)
-                self._connection = self._open()
+        self._lock = threading.RLock()
+        self._counter = served.Counter()
+        self._connection: sqlite3.Connection | None = None
+        self._file = (0, 0)
+        with self._lock, as_os_error():
+            self._open()
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file; what is asked of it from now on raises OSError."""
         with self._lock:
-            self._connection.close()
+            self._let_go()
+            self._file = (-1, -1)
+
+    # ------------------------------------------------------------ documents
 
     def read(self, id: str) -> bytes | None:
         """Content of a document, which counts as used now; None when there is none."""
-        with self._changing() as connection:
-            row = connection.execute("SELECT content FROM document WHERE id = ?", (id,)).fetchone()
-            if row is not None:
-                connection.execute("UPDATE document SET used_s = ? WHERE id = ?", (time.time(), id))
-        return None if row is None else bytes(row[0])
 
-    def _first(self, query: str, *values: str) -> Any:
+        def act(connection: sqlite3.Connection) -> bytes | None:
+            row = connection.execute("SELECT content FROM document WHERE id = ?", (id,)).fetchone()
+            if row is None:
+                return None
+            with unless_of_the_machine():  # what can be read is read on a full disk too
+                now = self._counter.count(connection)
+                connection.execute(
+                    "UPDATE document SET used_s = ?, used_served = ? WHERE id = ?", (time.time(), now, id)
+                )
+            return _as_bytes(row[0])
+
+        return self._do(act)
+
+    def _first(self, query: str, *values: object) -> Any:
         """First row of an answer."""
-        with self._changing() as connection:
-            return connection.execute(query, values).fetchone()
+        return self._do(lambda connection: connection.execute(query, values).fetchone())
 
     def has(self, id: str) -> bool:
         """Whether there is a document of that id."""
@@ -86,65 +108,169 @@ class Database:
 
     def write(self, id: str, content: bytes, shared_by: str | None = None) -> None:
         """Put a document in place of an earlier one; ``shared_by`` is the session a shared state is of."""
-        with self._changing() as connection:
+
+        def act(connection: sqlite3.Connection) -> None:
             connection.execute(
-                "INSERT INTO document (id, shared_by, used_s, content) VALUES (?, ?, ?, ?)"
-                " ON CONFLICT (id) DO UPDATE SET used_s = excluded.used_s, content = excluded.content",
-                (id, shared_by, time.time(), content),
+                "INSERT INTO document (id, shared_by, used_s, content, used_served) VALUES (?, ?, ?, ?, ?)"
+                " ON CONFLICT (id) DO UPDATE SET used_s = excluded.used_s, content = excluded.content,"
+                " used_served = excluded.used_served",
+                (id, shared_by, time.time(), content, self._counter.count(connection)),
             )
+
+        self._do(act)
 
     def shared_by(self, id: str) -> int:
         """How many states were shared from a session."""
         return self._first("SELECT count(*) FROM document WHERE shared_by = ?", id)[0]
-
-    def remove_old(self, sessions_before_s: float, shared_before_s: float, most: int) -> list[str]:
-        """Remove what was last used before these times, and the oldest beyond ``most``; their ids."""
-        with self._changing() as connection:
-            gone = connection.execute(
-                "SELECT id FROM document WHERE used_s < CASE WHEN shared_by IS NULL THEN ? ELSE ? END"
-                " UNION SELECT id FROM (SELECT id FROM document WHERE shared_by IS NULL"
-                " ORDER BY used_s DESC LIMIT -1 OFFSET ?)",
-                (sessions_before_s, shared_before_s, most),
-            ).fetchall()
-            connection.executemany("DELETE FROM document WHERE id = ?", gone)
-        return [row[0] for row in gone]
 
     def figures(self) -> dict[str, float]:
         """Documents and bytes kept, for ``/metrics``."""
         counts = self._first("SELECT count(*) - count(shared_by), count(shared_by) FROM document")
         return dict(zip(("kept_sessions", "kept_shared"), map(float, counts), strict=True))
 
-    @contextmanager
-    def _changing(self) -> Iterator[sqlite3.Connection]:
-        with self._lock, _as_os_error(), self._connection:
-            yield self._connection
+    # ------------------------------------------------------------ aside
 
-    def _open(self) -> sqlite3.Connection:
-        # SQLite would follow a link of that name, wait for ever at a FIFO, and remove what bears the others.
-        with opened(self.path.parent) as folder:
-            os.close(folder.open(NAME, os.O_RDWR | os.O_CREAT))
-            for name in (f"{NAME}{ending}" for ending in _ENDINGS):
-                if folder.state(name) is not None and folder.file(name) is None:
-                    raise OSError(None, f"{name} is no file of ours")
-        connection = sqlite3.connect(self.path, timeout=_BUSY_S, check_same_thread=False)
+    def put_aside(self, id: str, why: str) -> None:
+        """Keep a copy of a document as it is, beside the one that will be written over; once."""
+
+        def act(connection: sqlite3.Connection) -> None:
+            connection.execute(
+                "INSERT INTO aside (id, why, content, used_served)"
+                " SELECT id, ?, content, ? FROM document WHERE id = ? AND NOT EXISTS"
+                " (SELECT 1 FROM aside WHERE aside.id = document.id AND aside.content = document.content)",
+                (why, self._counter.count(connection), id),
+            )
+
+        self._do(act)
+
+    def asides(self, id: str) -> list[Aside]:
+        """What was put aside of a session, the newest first."""
+        query = "SELECT number, why FROM aside WHERE id = ? ORDER BY number DESC"
+        return [Aside(*row) for row in self._do(lambda one: one.execute(query, (id,)).fetchall())]
+
+    def aside(self, id: str, number: int) -> bytes | None:
+        """Content of a document that was put aside, as it was."""
+        row = self._first("SELECT content FROM aside WHERE id = ? AND number = ?", id, number)
+        return None if row is None else _as_bytes(row[0])
+
+    # ------------------------------------------------------------ upkeep
+
+    def remove_old(self, sessions_s: float, shared_s: float, most: int) -> list[str]:
+        """Remove what was not used for so long, and the oldest beyond ``most``; their ids.
+
+        Parameters
+        ----------
+        sessions_s, shared_s : float
+            Of the time in which a server has served; of shared states, and of what was put aside.
+        most : int
+            Of sessions.
+        """
+
+        def act(connection: sqlite3.Connection) -> list[str]:
+            now = self._counter.count(connection)
+            mend_rows(connection, now)
+            gone = connection.execute(
+                "SELECT id FROM document WHERE used_served < CASE WHEN shared_by IS NULL THEN ? ELSE ? END"
+                " UNION SELECT id FROM (SELECT id FROM document WHERE shared_by IS NULL"
+                " ORDER BY used_served DESC, used_s DESC LIMIT -1 OFFSET ?)",
+                (now - sessions_s, now - shared_s, most),
+            ).fetchall()
+            connection.executemany("DELETE FROM document WHERE id = ?", gone)
+            connection.execute("DELETE FROM aside WHERE used_served < ?", (now - shared_s,))
+            return [row[0] for row in gone]
+
+        return self._do(act)
+
+    def unused_s(self, names: Iterable[str]) -> dict[str, float]:
+        """Of names that nobody uses: for how long that is so, in seconds served; of others it begins anew."""
+        return self._do(lambda connection: self._counter.unused_s(connection, names))
+
+    def knows(self, id: str) -> bool:
+        """Whether there is a document of that id, or one put aside."""
+        return self.has(id) or self._first("SELECT 1 FROM aside WHERE id = ?", id) is not None
+
+    def check(self) -> None:
+        """Look at the whole file, beside those who use it; put it aside if it is damaged."""
         try:
-            connection.execute("PRAGMA journal_mode = WAL")
-            connection.execute("PRAGMA synchronous = NORMAL")
-            connection.executescript(_TABLES)
-            connection.execute(f"PRAGMA user_version = {_SCHEMA}")
-        except BaseException:
-            connection.close()
-            raise
-        return connection
+            with as_os_error(), beside(self.path) as connection:
+                check(connection)
+        except DamagedError as error:
+            with self._lock, as_os_error():
+                if self._connection is not None:
+                    self._put_aside(error)
+
+    # ------------------------------------------------------------ the file
+
+    def _do(self, act: Callable[[sqlite3.Connection], T]) -> T:
+        """Change or read the file as a whole; after damage, once more in what was made in its place."""
+        with self._lock:
+            for last in (False, False, True):
+                try:
+                    with as_os_error():
+                        if self._file == (-1, -1):
+                            raise OSError(None, "the file of the sessions is closed")
+                        if self._connection is None or self._was_moved():
+                            self._open()
+                        assert self._connection is not None
+                        with self._connection:
+                            result = act(self._connection)
+                        # Another worker may have put the file aside meanwhile, and have read it before.
+                        if last or not self._was_moved():
+                            return result
+                except DamagedError as error:
+                    if last:
+                        raise
+                    with as_os_error():
+                        self._put_aside(error)
+        raise AssertionError
+
+    def _was_moved(self) -> bool:
+        try:
+            state = os.stat(self.path)
+        except FileNotFoundError:
+            return True
+        return (state.st_dev, state.st_ino) != self._file
+
+    def _open(self) -> None:
+        with opened(self.path.parent) as folder, alone(folder):
+            before, self._connection = self._connection, None
+            rows = rescued(folder, before) if before is not None else []
+            try:
+                self._connection = open_checked(folder, self.path, self._counter)
+            except DamagedError as error:
+                self._connection = begin_anew(folder, self.path, error)
+            self._note_file(folder)
+            if rows:
+                take_over(self._connection, rows)
+
+    def _put_aside(self, error: DamagedError) -> None:
+        """Begin anew with what can be read, unless another worker has done so."""
+        if self._connection is not None and not self._was_moved():
+            self._let_go()
+            with opened(self.path.parent) as folder, alone(folder):
+                if not self._was_moved():
+                    self._connection = begin_anew(folder, self.path, error)
+                    self._note_file(folder)
+
+    def _note_file(self, folder: Folder) -> None:
+        state = folder.state(NAME)
+        assert state is not None
+        self._file = (state.st_dev, state.st_ino)
+
+    def _let_go(self) -> None:
+        connection, self._connection = self._connection, None
+        if connection is None:
+            return
+        if not self._was_moved():
+            with suppress(sqlite3.Error):
+                connection.close()
+            return
+        with suppress(OSError), opened(self.path.parent) as folder, alone(folder):
+            close_moved(folder, connection)
 
 
-@contextmanager
-def _as_os_error() -> Iterator[None]:
-    """Raise an error of SQLite about a full or broken disk as Python's own error."""
-    try:
-        yield
-    except (sqlite3.OperationalError, sqlite3.ProgrammingError) as error:  # the latter: it is closed
-        raise OSError(None, str(error)) from error
+def _as_bytes(content: object) -> bytes:
+    return content if isinstance(content, bytes) else str(content).encode("utf-8", "surrogateescape")
 
 
 def parsed(id: str, content: bytes) -> dict[str, Any]:

@@ -19,7 +19,10 @@ _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
 TEMPORARY = re.compile(r"\.[0-9a-f]{16}\.tmp")
 CONTENT = re.compile(r"[0-9a-f]{64}")
 FILES = re.compile(r"[A-Za-z0-9_-]{1,64}\.files")
-_FILES_OF_STATE = re.compile(r"lock|session\.key|sessions\.sqlite(-wal|-shm|-journal)?|" + TEMPORARY.pattern)
+PUT_ASIDE = re.compile(r"sessions\.(broken|newer)-\d+")
+_FILES_OF_STATE = re.compile(
+    rf"lock|session\.key|(sessions\.sqlite|{PUT_ASIDE.pattern})(-wal|-shm|-journal)?|{TEMPORARY.pattern}"
+)
 _FOLDERS_OF_STATE = re.compile(r"content|" + FILES.pattern)
 _ELSEWHERE = "or set XDG_STATE_HOME to another folder"
 _log = logging.getLogger("schuler.store")
@@ -145,6 +148,21 @@ def opened(path: Path, *, make: bool = False) -> Iterator[Folder]:
         yield Folder(handle)
     finally:
         os.close(handle)
+
+
+@contextmanager
+def alone(folder: Folder) -> Iterator[None]:
+    """Wait until no other process is within this for the same folder."""
+    try:
+        import fcntl
+    except ImportError:  # not on this platform
+        yield
+        return
+    fcntl.flock(folder.handle, fcntl.LOCK_EX)
+    try:
+        yield
+    finally:
+        fcntl.flock(folder.handle, fcntl.LOCK_UN)
 
 
 def link_files(source: Path, target: Path) -> None:

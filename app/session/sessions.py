@@ -6,25 +6,27 @@ import shutil
 import tempfile
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
-from weakref import WeakKeyDictionary
-
-from pydantic import ValidationError
 
 from navcore.engine.run import Run
-from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import copied_from, log_name, new_shared_id, shared_in
-from schuler_bench.session.display import Display
+from schuler_bench.session.document import (
+    BROKEN,
+    IN_PART,
+    Document,
+    ReadingError,
+    pins_of,
+    restore,
+    to_document,
+)
 from schuler_bench.session.folder import link_files, remove_files
-from schuler_bench.session.history import History, State
+from schuler_bench.session.keeping import Keeping, NotKept, SetAside
 from schuler_bench.session.session import Session
-from schuler_bench.session.store import Store
-from schuler_bench.session.studying import LARGEST_TEXT
-from schuler_bench.session.uploads import plain_names, shared_files
+from schuler_bench.session.store import Store, UnreadableError
 
 MOST_SESSIONS = 64
 """Sessions held without an open page; with one they are always held."""
@@ -33,19 +35,12 @@ MOST_IDLE_RUNS = 8
 MOST_SHARED = 64
 """States that can be shared when there is no store to put them in."""
 FIRST_PRESET = "sikuliaq-like"
+NOT_READ = NotKept(
+    Text("the kept session cannot be read at present"),
+    Text("What is kept stays as it is. Close this page and open the address again later."),
+)
+_ANEW = Text("It begins anew; what was kept is put aside, untouched.")
 _log = logging.getLogger("schuler.sessions")
-_document_log = logging.getLogger("schuler.document")
-SCHEMA = 1
-STEPS_BACK, STEPS_FORWARD = 50, 20
-"""Steps of the history that are kept."""
-_LONGEST_NAME = 60
-
-Document = dict[str, Any]
-T = TypeVar("T")
-_numbered: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
-"""Content of each session's last document: scenarios by their identity, as they are written."""
-Unreadable = (InputError, ValidationError, ValueError, TypeError, KeyError, IndexError, AttributeError)
-"""Errors that reading a document of strange content raises."""
 
 
 class Sessions:
@@ -59,6 +54,8 @@ class Sessions:
         Where they outlive the server; without one a dropped session begins anew.
     on_answer : callable, optional
         ``on_answer(seconds)`` after every run that is shown.
+    keeping : Keeping, optional
+        Whether anything is kept at present.
     """
 
     def __init__(
@@ -66,8 +63,10 @@ class Sessions:
         first: Callable[[], tuple[Scenario, str]] | None = None,
         store: Store | None = None,
         on_answer: Callable[[float], None] = lambda _: None,
+        keeping: Keeping | None = None,
     ) -> None:
         self._first, self._store, self._on_answer = first or first_scenario, store, on_answer
+        self._keeping = keeping or Keeping()
         self._lock = threading.Lock()
         self._by_id: OrderedDict[str, Session] = OrderedDict()
         self._opening: dict[str, threading.Lock] = {}
@@ -76,6 +75,7 @@ class Sessions:
         self.prepared: Run | None = None
         """Run of the scenario that a new visitor sees; its first picture need not wait for it."""
         atexit.register(self.close)
+        self._keeping.watch(self._tell_kept)
 
     def get(self, id: str) -> Session:
         """Return the session with that id: as it was left, a copy of a shared state, or new."""
@@ -86,6 +86,8 @@ class Sessions:
         with making:
             with self._lock:
                 session = self._by_id.get(id)
+            if session is not None and session.unkept is NOT_READ and not session.open_pages:
+                session = None  # perhaps it can be read now
             opened = self._make(id) if session is None else session
             with self._lock:
                 self._opening.pop(id, None)
@@ -135,18 +137,20 @@ class Sessions:
     def _make(self, id: str) -> Session:
         scenario, origin = self._first()
         session = Session(id, scenario, origin, self._files_folder(id))
-        session.prepared = self.prepared
-        document, source = self._kept(id), id
+        session.prepared, session.keeping = self.prepared, self._keeping
+        session.on_change = partial(self._changed, session)
         shared = copied_from(id)
-        if document is None and shared is not None:
-            document, source = self._kept(shared), shared
-        if document is not None:
-            self._fill(session, document, source)
+        try:
+            if not self._fill(session, id) and shared is not None:
+                self._fill(session, shared)
+        except OSError as error:
+            _log.warning("session %s cannot be read at present: %s", log_name(id), error.strerror or error)
+            session.not_kept(NOT_READ)
+            session.on_change = lambda: None  # it would be written over
         if self._store is not None:
             session.uploads.has_room = self._store.has_room
             session.uploads.keep_once = self._store.contents.keep_once
         session.on_answer = self._on_answer
-        session.on_change = partial(self._changed, session)
         session.share = partial(self._share, session)
         session.shared_pins = partial(self._shared_pins, session)
         return session
@@ -154,21 +158,66 @@ class Sessions:
     def _kept(self, id: str) -> Document | None:
         return self._shared.get(id) if self._store is None else self._store.read(id)
 
-    def _fill(self, session: Session, document: Document, source: str) -> None:
+    def _fill(self, session: Session, source: str) -> bool:
+        """Put into a new session what is kept under an id; False when there is nothing.
+
+        What cannot be read is put aside, and the session says so.
+
+        Raises
+        ------
+        OSError
+            It cannot be read, or put aside, at present.
+        """
         try:
+            document = self._kept(source)
+            if document is None:
+                self._show_aside(session, source)
+                return False
             if source != session.id:
                 link_files(self._files_folder(source), session.uploads.folder)
             if session.uploads.folder.is_dir():
                 session.uploads.reopen()
-            restore(session, document)
-        except (*Unreadable, OSError) as error:
-            _log.warning("a kept session begins anew: %s: %.200s", type(error).__name__, error)
+            left = restore(session, document)
+            if left:
+                why, told = IN_PART, Text("Left out: {parts}.", parts=Text.joined(", ", left))
+                self._put_aside(session, source, why, told)
+        except UnreadableError as error:
+            _log.warning("a kept session begins anew: %s", error)
+            self._put_aside(session, source, BROKEN, _ANEW)
+        except ReadingError as error:
+            _log.warning("a kept session begins anew: %s", error)
+            self._put_aside(session, source, error.why, _ANEW)
+        self._show_aside(session, source)
+        return True
+
+    def _put_aside(self, session: Session, source: str, why: str, told: str) -> None:
+        if self._store is None:
+            return
+        self._store.database.put_aside(source, str(why))
+        session.unreadable = Text(
+            "This session could not be opened as it was kept: {why}. {told}", why=why, told=told
+        )
+
+    def _show_aside(self, session: Session, source: str) -> None:
+        """Offer what was put aside of a session to its page."""
+        if self._store is not None:
+            database = self._store.database
+            session.set_aside += tuple(
+                SetAside(f"session-{one.number}.json", one.why, partial(database.aside, source, one.number))
+                for one in database.asides(source)
+            )
 
     # ------------------------------------------------------------ keeping
 
     def _changed(self, session: Session) -> None:
         if self._store is not None:
-            self._store.soon(session.id, partial(to_document, session), session.not_kept)
+            self._store.saving.soon(session.id, partial(to_document, session), session.not_kept)
+
+    def _tell_kept(self, _: NotKept | None) -> None:
+        with self._lock:
+            sessions = list(self._by_id.values())
+        for session in sessions:
+            session.tell_kept()
 
     def _share(self, session: Session) -> str:
         id = new_shared_id()
@@ -186,8 +235,12 @@ class Sessions:
 
     def _shared_pins(self, session: Session, address: str) -> list[Document] | None:
         id = shared_in(address)
-        document = None if id is None else self._kept(id)
-        return None if document is None else _pins(session, document)
+        try:
+            document = None if id is None else self._kept(id)
+            return None if document is None else pins_of(session, document)
+        except (UnreadableError, OSError) as error:
+            _log.warning("a shared state cannot be read: %s", error)
+            return None
 
     def _files_folder(self, id: str) -> Path:
         if self._store is not None:
@@ -218,147 +271,3 @@ def first_scenario() -> tuple[Scenario, str]:
     names = list(presets())
     name = FIRST_PRESET if FIRST_PRESET in names else next(iter(names), "")
     return (load(name), name) if name else (Scenario(), "")
-
-
-# ------------------------------------------------------------ documents
-
-
-def to_document(session: Session, *, whole: bool = True) -> Document:
-    """Everything of a session that is kept.
-
-    Parameters
-    ----------
-    session : Session
-        Stays as it is; it is locked meanwhile.
-    whole : bool
-        With the history; a copy for others has none.
-
-    Returns
-    -------
-    dict
-        Plain values. Recordings are named, by their names alone.
-    """
-    with session.lock:
-        steps, at = tuple(session.history.steps), session.history.at
-        display, pins = session.display, session.pins.to_json()
-        files, shown = list(session.uploads.files), session.pins.all
-        state, study = session.state, session.study_file
-    if not whole:
-        steps, at = ((state, ""),), 0
-    first = max(0, at - STEPS_BACK)
-    kept = steps[first : at + STEPS_FORWARD + 1]
-    scenarios = _Scenarios(_numbered.get(session, {}))
-    baseline = next((index for index, pin in enumerate(shown, start=1) if pin.id == display.baseline), None)
-    listed = [_step(one, name, scenarios) for one, name in kept]
-    if whole:
-        _numbered[session] = scenarios.numbered
-    return {
-        "schema": SCHEMA,
-        "id": session.id,
-        "at": at - first,
-        "steps": listed,
-        "scenarios": [document for _, document in scenarios.numbered.values()],
-        "display": display.model_dump(mode="json") | {"baseline": baseline},
-        "pins": [pin | {"scenario": plain_names(pin["scenario"])} for pin in pins],
-        "files": files,
-        "study": [*study],
-    }
-
-
-class _Scenarios:
-    """Scenarios of a document, each once, in the order in which they are first met.
-
-    Parameters
-    ----------
-    before : dict
-        What the document before held: a session is written after every change, most of it as it was.
-    """
-
-    def __init__(self, before: dict[int, tuple[Scenario, Document]]) -> None:
-        self._before = before
-        self.numbered: dict[int, tuple[Scenario, Document]] = {}
-        self._numbers: dict[int, int] = {}
-
-    def number(self, scenario: Scenario) -> int:
-        key = id(scenario)
-        if key not in self.numbered:
-            known, document = self._before.get(key, (None, {}))
-            if known is not scenario:
-                document = plain_names(scenario.canonical())
-            self.numbered[key] = scenario, document
-        return self._numbers.setdefault(key, len(self._numbers))
-
-
-def _step(state: State, name: str, scenarios: _Scenarios) -> Document:
-    document = {"scenario": scenarios.number(state.scenario), "opened": scenarios.number(state.opened)}
-    return document | {"origin": state.origin, "selected": state.selected} | ({"name": name} if name else {})
-
-
-def restore(session: Session, document: Document) -> None:
-    """Put what a document holds into a new session, whose uploaded files are there already.
-
-    Raises
-    ------
-    InputError, ValueError, TypeError, KeyError ...
-        `Unreadable`: the present state cannot be read; the session stays as it is. Anything else that cannot
-        be read is left out, with a line in the log.
-    """
-    if document["schema"] != SCHEMA:
-        raise ValueError(f"schema {document['schema']!r}, not {SCHEMA}")
-    names = _recordings(session)
-    steps, at = list(document["steps"]), int(document["at"])
-    scenarios: dict[int, Scenario] = {}
-
-    def state(step: Document) -> State:
-        pair = []
-        for number in (int(step["scenario"]), int(step["opened"])):
-            if number not in scenarios:
-                scenarios[number] = _scenario(document["scenarios"][number], names)
-            pair.append(scenarios[number])
-        selected = min(max(int(step["selected"]), 0), len(pair[0].method) - 1)
-        return State(pair[0], str(step["origin"])[:_LONGEST_NAME], selected, pair[1])
-
-    def part(name: str, read: Callable[[], T], otherwise: T) -> T:
-        """Read a part that the session can do without."""
-        try:
-            return read()
-        except Unreadable as error:
-            _document_log.warning("the %s of a kept session cannot be read: %s", name, _line(error))
-            return otherwise
-
-    def history() -> History:
-        return History.of([(state(step), str(step.get("name", ""))[:200]) for step in steps], at)
-
-    def study() -> tuple[str, str]:
-        name, text = document.get("study", ("", ""))
-        return str(name)[:_LONGEST_NAME], str(text)[:LARGEST_TEXT]
-
-    present = state(steps[at])
-    session.resume(
-        part("history", history, History(present)),
-        part(
-            "display",
-            lambda: Display.model_validate(document["display"]),
-            Display(),
-        ),
-    )
-    part("pins", lambda: session.pins.from_json(_pins(session, document)), None)
-    session.study_file = part("study", study, ("", ""))
-
-
-def _pins(session: Session, document: Document) -> list[Document]:
-    """Pins of a document, their recordings those of the session."""
-    names = _recordings(session)
-    return [pin | {"scenario": _scenario(pin["scenario"], names).canonical()} for pin in document["pins"]]
-
-
-def _recordings(session: Session) -> dict[str, Path]:
-    return {name: upload.path for name, upload in session.uploads.files.items()}
-
-
-def _scenario(data: Any, names: Mapping[str, Path]) -> Scenario:
-    return shared_files(Scenario.parse(data), names)
-
-
-def _line(error: BaseException) -> str:
-    return f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:200]

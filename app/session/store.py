@@ -9,19 +9,17 @@ import re
 import secrets
 import sys
 import tempfile
-import threading
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
 from navcore.foundation.text import Text
 from schuler_bench.http.ids import log_name
-from schuler_bench.jobs.words import without_folders
+from schuler_bench.session import content
 from schuler_bench.session.content import Contents
 from schuler_bench.session.database import Database, parsed
 from schuler_bench.session.folder import (
     FILES,
+    PUT_ASIDE,
     TEMPORARY,
     Folder,
     link_files,
@@ -30,12 +28,12 @@ from schuler_bench.session.folder import (
     remove_files,
     temporary_name,
 )
+from schuler_bench.session.keeping import HELD, Keeping, not_kept
+from schuler_bench.session.saving import Saving, UnfitError
 
-WRITE_AFTER_S = 0.5
-"""Between a change and the file: changes that follow each other are written once."""
 MOST_KEPT = 2000
 OLDEST_S = 60 * 86_400.0
-"""Number and age of the sessions that are kept; of a link that was shared, ten times that age."""
+"""Number of the sessions that are kept, and time served since their last use; of a link ten times that."""
 MOST_LINKS = 100
 """States that may be shared from one session."""
 LARGEST_DOCUMENT = 16 << 20
@@ -43,9 +41,8 @@ LARGEST_UPLOADS = 2 << 30
 """Bytes of the uploaded files of all sessions, each content counted once."""
 CLAIMED = "SCHULER_STATE_CLAIMED"
 """Set in the environment of a worker whose door has claimed the folder."""
-_UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
-NO_HOME = Text("there is no home folder: set XDG_STATE_HOME")
+"""So long a server must have served since a file or folder has no session."""
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _KEY, _KEY_BYTES = "session.key", 32
 _log = logging.getLogger("schuler.store")
@@ -54,7 +51,7 @@ _log = logging.getLogger("schuler.store")
 def default_folder() -> Path | None:
     """Where the user's sessions are kept: under ``XDG_STATE_HOME``, else where the platform keeps such.
 
-    None, with a line in the log, where there is neither that nor a home folder.
+    None where there is neither that nor a home folder.
     """
     chosen = os.environ.get("XDG_STATE_HOME")
     if chosen and Path(chosen).is_absolute():
@@ -64,7 +61,6 @@ def default_folder() -> Path | None:
             within = "Library/Application Support" if sys.platform == "darwin" else ".local/state"
             base = Path.home() / within
         except RuntimeError:
-            _log.warning("sessions are not kept over a restart: %s", NO_HOME)
             return None
     return base / "schuler-bench" / "sessions"
 
@@ -83,18 +79,39 @@ def checked_folder() -> Path | None:
     return folder
 
 
-def open_store(folder: Path) -> Store | None:
-    """Open a folder of documents, made if need be; None, with a line in the log, if it cannot be used."""
+def open_store(folder: Path, keeping: Keeping | None = None) -> Store | None:
+    """Open a folder of documents, made if need be.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the state.
+    keeping : Keeping, optional
+        Told why nothing is kept, and when that changes.
+
+    Returns
+    -------
+    Store or None
+        None: the folder cannot be used.
+    """
+    keeping = keeping or Keeping()
     try:
         folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with opened(folder, make=True) as ours:
             os.fchmod(ours.handle, 0o700)
         with tempfile.TemporaryFile(dir=folder):
             pass
-        return Store(folder, claim(folder, shared=bool(os.environ.get(CLAIMED))))
+        return Store(folder, claim(folder, shared=bool(os.environ.get(CLAIMED))), keeping)
+    except HeldError:
+        keeping.becomes(HELD)
     except OSError as error:
-        _log.warning("sessions are not kept over a restart: %s: %s", folder, error.strerror or error)
-        return None
+        _log.warning("%s cannot be used: %s", folder, error.strerror or error)
+        keeping.becomes(not_kept(error))
+    return None
+
+
+class HeldError(OSError):
+    """Another server holds the folder."""
 
 
 def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
@@ -109,8 +126,10 @@ def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
 
     Raises
     ------
-    OSError
+    HeldError
         Another server holds it.
+    OSError
+        It cannot be held.
     """
     with opened(folder) as ours:
         file = os.fdopen(ours.open("lock", os.O_RDWR | os.O_CREAT), "r+b")
@@ -122,7 +141,7 @@ def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
         return file
     except OSError:
         file.close()
-        raise OSError(None, Text("another server keeps its sessions there; set XDG_STATE_HOME")) from None
+        raise HeldError(None, Text("another server keeps its sessions there; set XDG_STATE_HOME")) from None
     return file
 
 
@@ -142,6 +161,8 @@ class Store:
         Exists, can be written to, and is ours alone.
     claim : file
         Held open as long as the folder is used.
+    keeping : Keeping
+        Told whether documents can be written.
 
     Raises
     ------
@@ -149,7 +170,7 @@ class Store:
         The documents cannot be opened.
     """
 
-    def __init__(self, folder: Path, claim: IO[bytes]) -> None:
+    def __init__(self, folder: Path, claim: IO[bytes], keeping: Keeping) -> None:
         self.folder, self._claim = folder, claim
         self.contents = Contents(folder / "content")
         try:
@@ -157,26 +178,30 @@ class Store:
         except BaseException:
             claim.close()
             raise
-        self._changed = threading.Condition()
-        self._due: dict[str, tuple[float, Callable[[], Any], Callable[[str], None]]] = {}
-        self._writing = 0
-        self._closed = self._complained = False
-        self._upkeep_s = 0.0
-        self._thread = threading.Thread(target=self._loop, name="store", daemon=True)
-        self._thread.start()
+        self.saving = Saving(self.write, self.upkeep, keeping)
 
     # ------------------------------------------------------------ reading
 
     def read(self, id: str) -> dict[str, Any] | None:
-        """Document of that id; None, with a line in the log if it is broken, when there is none."""
-        _checked(id)
+        """Document of that id; None when there is none.
+
+        Raises
+        ------
+        UnreadableError
+            There is one that is broken; a copy of it is put aside.
+        OSError
+            It cannot be read at present.
+        """
+        waiting = self.saving.waiting(_checked(id))
+        if waiting is not None:
+            return waiting()
+        content = self.database.read(id)
+        if content is None:
+            return None
         try:
-            content = self.database.read(id)
-            return None if content is None else parsed(id, content)
-        except (OSError, ValueError, RecursionError) as error:
-            words = getattr(error, "strerror", None) or error
-            _log.warning("session %s cannot be read: %.200s", log_name(id), words)
-        return None
+            return parsed(id, content)
+        except (ValueError, RecursionError) as error:
+            raise UnreadableError(f"{type(error).__name__}: {error}"[:200]) from error
 
     def has(self, id: str) -> bool:
         """Whether there is a document of that id."""
@@ -195,30 +220,13 @@ class Store:
 
     # ------------------------------------------------------------ writing
 
-    def soon(
-        self, id: str, make: Callable[[], dict[str, Any]], failed: Callable[[str], None] = lambda _: None
-    ) -> None:
-        """Let a document be made and written in a moment, in another thread; the first request counts.
-
-        Parameters
-        ----------
-        id : str
-            Of the session.
-        make : callable
-            Gives the document.
-        failed : callable
-            Told in words why it could not be written.
-        """
-        with self._changed:
-            if not self._closed and id not in self._due:
-                self._due[_checked(id)] = (time.monotonic() + WRITE_AFTER_S, make, failed)
-                self._changed.notify_all()
-
     def write(self, id: str, document: dict[str, Any], shared_by: str | None = None) -> None:
         """Write a document now: whole or not at all.
 
         Raises
         ------
+        UnfitError
+            It is too large.
         OSError
             There is no room, or the folder is gone.
         """
@@ -226,7 +234,7 @@ class Store:
 
         content = orjson.dumps(document, option=orjson.OPT_NON_STR_KEYS)
         if len(content) > LARGEST_DOCUMENT:
-            raise OSError(
+            raise UnfitError(
                 None,
                 Text(
                     "the session takes more than {largest_document} MiB",
@@ -250,88 +258,50 @@ class Store:
         link_files(self.files_folder(id), self.files_folder(shared))
         self.write(shared, document, shared_by=id)
 
-    def flush(self, timeout_s: float = 5.0) -> bool:
-        """Write at once what waits; False if that takes longer."""
-        with self._changed:
-            self._due = {id: (0.0, make, failed) for id, (_, make, failed) in self._due.items()}
-            self._changed.notify_all()
-            return self._changed.wait_for(lambda: not self._due and not self._writing, timeout_s)
-
     def close(self) -> None:
         """Write what waits, end the thread and let the folder go."""
-        self.flush()
-        with self._changed:
-            self._closed = True
-            self._changed.notify_all()
-        self._thread.join(1.0)
+        self.saving.close()
         self.database.close()
         self._claim.close()
 
-    def _loop(self) -> None:
-        while True:
-            if time.monotonic() >= self._upkeep_s:
-                self.remove_old()
-                self._upkeep_s = time.monotonic() + _UPKEEP_EVERY_S
-            with self._changed:
-                while not self._closed and not self._ready() and time.monotonic() < self._upkeep_s:
-                    dues = [self._upkeep_s, *(due for due, *_ in self._due.values())]
-                    self._changed.wait(max(0.0, min(dues) - time.monotonic()))
-                if self._closed:
-                    return
-                makes = {id: self._due.pop(id)[1:] for id in self._ready()}
-                self._writing += 1
-            try:
-                for id, (make, failed) in makes.items():
-                    self._try_to_write(id, make, failed)
-            finally:
-                with self._changed:
-                    self._writing -= 1
-                    self._changed.notify_all()
-
-    def _ready(self) -> list[str]:
-        now = time.monotonic()
-        return [id for id, (due, *_) in self._due.items() if due <= now]
-
-    def _try_to_write(
-        self, id: str, make: Callable[[], dict[str, Any]], failed: Callable[[str], None]
-    ) -> None:
-        try:
-            self.write(id, make())
-            self._complained = False
-        except OSError as error:
-            words = without_folders(str(error.strerror or error))
-            if not self._complained:
-                _log.warning("sessions cannot be kept at present: %s", words)
-            self._complained = True
-            failed(words)
-        except Exception:  # the thread must outlive a document that cannot be made
-            _log.exception("a session cannot be kept")
-            failed(Text("an error of this program"))
-
     # ------------------------------------------------------------ upkeep
 
-    def remove_old(self) -> None:
-        """Remove what is too old, then the oldest of too many sessions, and what nobody uses any more."""
-        now = time.time()
-        try:
-            for id in self.database.remove_old(now - OLDEST_S, now - 10.0 * OLDEST_S, MOST_KEPT):
-                _log.info("removed session %s: not used for long, or one too many", log_name(id))
-                remove_files(self.files_folder(id))
-            self._remove_orphans(now)
-            self.contents.remove_unused()
-        except OSError as error:
-            _log.warning("old sessions cannot be removed: %s", error.strerror or error)
+    def upkeep(self) -> None:
+        """Look for damage, then remove what is old; OSError when that is not possible."""
+        self.database.check()
+        self.remove_old()
 
-    def _remove_orphans(self, now: float) -> None:
+    def remove_old(self) -> None:
+        """Remove what is too old, then the oldest of too many sessions, and what nobody uses any more.
+
+        Age is the time in which servers have served: the clock of the machine may be wrong.
+        """
+        for id in self.database.remove_old(OLDEST_S, 10.0 * OLDEST_S, MOST_KEPT):
+            _log.info("removed session %s: not used for long, or one too many", log_name(id))
+            remove_files(self.files_folder(id))
+        contents = self.contents.unused()
         with opened(self.folder) as ours:
-            for name in ours.names():
-                state = ours.state(name)
-                if state is None or now - state.st_mtime < _ORPHAN_S:
-                    continue
-                if TEMPORARY.fullmatch(name) and ours.file(name):
+            names = ours.names()
+            left = {name for name in names if TEMPORARY.fullmatch(name) and ours.file(name)}
+            # Of a session that was lost with a damaged file, the recordings are all there is.
+            lost = any(PUT_ASIDE.fullmatch(name) for name in names)
+            folders = set() if lost else set(filter(FILES.fullmatch, names))
+            orphans = {name for name in folders if not self._knows(Path(name).stem)}
+            unused_s = self.database.unused_s({*contents, *left, *orphans})
+            for name in left:
+                if unused_s[name] > _ORPHAN_S:
                     ours.remove(name, f"{name}, which was never put in its place")
-                elif FILES.fullmatch(name) and not self.has(Path(name).stem):
+            for name in orphans:
+                if unused_s[name] > _ORPHAN_S:
                     remove_files(self.folder / name)
+        self.contents.remove(name for name in contents if unused_s[name] > content.UNLINKED_S)
+
+    def _knows(self, id: str) -> bool:
+        return self.saving.waiting(id) is not None or self.database.knows(id)
+
+
+class UnreadableError(ValueError):
+    """A document cannot be read."""
 
 
 def _checked(id: str) -> str:

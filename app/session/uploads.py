@@ -204,7 +204,7 @@ class Uploads:
             files = folder.files(lambda name: safe_file_name(name) == name and not name.endswith(MAP_SUFFIX))
         for name in sorted(files, key=lambda name: files[name].st_mtime)[:MOST_FILES]:
             path = self.folder / name
-            with suppress(InputError):
+            with suppress(InputError, UnicodeDecodeError):
                 self.files[name] = self._found(path, path, _map_beside(path))
 
     def clear(self) -> None:

@@ -27,8 +27,8 @@ class View(Protocol):
     def run_failed(self, error: Exception) -> None:
         """Say that something of ours went wrong; the last good picture stays."""
 
-    def not_kept(self, why: str) -> None:
-        """Say that the work is not kept over a restart at present."""
+    def keeping_changed(self) -> None:
+        """Say that the work is not kept over a restart at present, or no longer so."""
 
     def run_waits(self) -> None:
         """Say that the changed scenario runs only when the user asks for it."""

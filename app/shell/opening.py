@@ -166,6 +166,18 @@ class Opening:
         self._client.send_file_download(name, content, save_immediately=True)
         self._client.flush()
 
+    def give_aside(self, number: int) -> None:
+        """Let the browser save what was kept and cannot be read, as it is."""
+        client = self._client
+        with notices.told(client, Text("It cannot be downloaded at present"), lambda: None):
+            one = self._session.set_aside[number]
+            content = one.content()
+            if content is None:
+                notices.tell(client, Text("{name} is no longer there", name=one.name), [], "warning")
+                return
+            client.send_file_download(one.name, content, save_immediately=True)
+            client.flush()
+
 
 def as_json(document: Any, *, indent: bool = False) -> bytes:
     """JSON text of a document of plain values."""

@@ -26,7 +26,7 @@ from schuler_bench.shell.column import Column
 from schuler_bench.shell.commands import Commands
 from schuler_bench.shell.editor import Editor
 from schuler_bench.shell.following import Following
-from schuler_bench.shell.header import HeaderPanel
+from schuler_bench.shell.header import NOT_SAVED, HeaderPanel
 from schuler_bench.shell.layout import Columns, Layout, Window, layout_for
 from schuler_bench.shell.opening import Opening
 from schuler_bench.shell.pace import Pace
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     import viser
 
 _SIZE_WAIT_S = 1.5
-_SAY_AGAIN_S = 120.0
 
 
 class Page:
@@ -58,7 +57,7 @@ class Page:
     def __init__(self, client: viser.ClientHandle, session: Session, kinds: Sequence[type[View]]) -> None:
         self.client, self.session, self.gui = client, session, client.gui
         self._closed = self._built = self._tells = False
-        self._say_again_s = 0.0
+        self._said_unkept = False
         self._window: Window = (0, 0, False, False, 1.0, Columns())
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -96,6 +95,7 @@ class Page:
             self._heard = gui.add_html("", order=3)
             self._picture = gui.add_html("", order=3)
             self.refresh()
+            self._show_keeping()
             self._fold()
             for view in self._views:
                 self._faults.call(view.follow_display)
@@ -209,15 +209,19 @@ class Page:
         self.header.show_stopped(self.session.run_number)
         self.client.flush()
 
-    def not_kept(self, why: str) -> None:
-        """The work is not kept over a restart at present; said once in a while."""
-        if time.monotonic() >= self._say_again_s:
-            self._say_again_s = time.monotonic() + _SAY_AGAIN_S
-            words = [
-                Text("The server could not write it down: {why}.", why=why),
-                Text("A download keeps the scenario."),
-            ]
-            notices.tell(self.client, Text("Your work is not saved at present"), words, "warning")
+    def keeping_changed(self) -> None:
+        """The work is not kept over a restart at present, or no longer so."""
+        self._update(self._show_keeping)
+
+    def _show_keeping(self) -> None:
+        fault = self.session.not_kept_now
+        self.header.show_keeping(fault, self.session.unreadable)
+        if (fault is not None) != self._said_unkept:
+            self._said_unkept = fault is not None
+            if fault is not None:
+                lines = [Text("{reason:sentence}", reason=fault.reason), fault.remedy]
+                lines.append(Text("A download keeps the scenario."))
+                notices.tell(self.client, NOT_SAVED, lines, "warning")
 
     def run_waits(self) -> None:
         """The changed scenario takes long: it runs when the user asks for it."""

@@ -131,7 +131,7 @@ def test_a_page_is_told_of_a_failed_autosave(served: tuple[DashboardServer, Dash
             number = page.run_number
             page.set(ZETA, value)
             page.wait(lambda: page.run_number > number, "an answer although nothing may be saved", 60.0)
-            assert store.flush(60.0)
+            assert store.saving.flush(60.0)
 
         move(0.6)
         (session,) = dashboard.sessions._by_id.values()
@@ -146,12 +146,16 @@ def test_a_page_is_told_of_a_failed_autosave(served: tuple[DashboardServer, Dash
                 longer = session.scenario.model_copy(update={"title": f"{step} " + "x" * 250})
                 session.change(longer, None, name=f"step {step}")
             page.wait(lambda number=number: page.run_number > number, "an answer", 60.0)
-            assert store.flush(60.0)
+            assert store.saving.flush(60.0)
             page.rest(0.05)
             if NOT_SAVED in dict(page.notices):
                 break
         (told,) = [text for title, text in page.notices if title == NOT_SAVED]
-        assert "database or disk is full" in told and "A download keeps the scenario" in told
+        assert (
+            "database or disk is full" in told
+            and "Saving is tried again by itself" in told
+            and "A download keeps the scenario" in told
+        )
         assert str(store.folder) not in told
 
         move(0.7)

@@ -104,7 +104,7 @@ def test_a_session_that_had_to_make_room_comes_back(
     monkeypatch.setattr("schuler_bench.session.sessions.MOST_SESSIONS", 1)
     sessions = started()
     state = worked_on(sessions).state
-    assert sessions._store.flush()
+    assert sessions._store.saving.flush()
     for number in range(3):
         sessions.get(f"another-{number}")
     assert ID not in sessions._by_id and sessions.get(ID).state == state
@@ -126,6 +126,16 @@ def change(key: str, value: Any) -> Callable[[Document], None]:
     return lambda document: document.update({key: value})
 
 
+def put_in(place: str, key: str, value: Any) -> Callable[[Document], None]:
+    """Change a value of every entry of a list."""
+
+    def put(document: Document) -> None:
+        for entry in document[place]:
+            entry[key] = value
+
+    return put
+
+
 def name_a_file_of_the_server(document: Document) -> None:
     for scenario in document["scenarios"]:
         scenario["reference"] = {"kind": "file", "file": [__file__]}
@@ -145,15 +155,115 @@ def name_a_file_of_the_server(document: Document) -> None:
         change("scenarios", [{"method": "x"}] * 9),
         lambda document: document.pop("steps"),
         lambda document: document["steps"][document["at"]].update(selected="many"),
+        change("schema", 2),
+        change("schema", None),
+        change("at", -1),
+        change("at", float("inf")),
+        change("at", float("nan")),
+        change("at", True),
+        put_in("steps", "scenario", -1),
+        put_in("steps", "opened", 1e9),
+        put_in("steps", "selected", float("inf")),
+        put_in("scenarios", "from_the_future", {}),
+        put_in("scenarios", "run", {"duration_h": float("nan")}),
+        put_in("scenarios", "method", []),
     ],
 )
-def test_a_strange_document_is_a_fresh_session_and_one_log_line(
-    after: Callable[..., Session], caplog: pytest.LogCaptureFixture, spoil: Any
+def test_a_strange_document_is_a_fresh_session_and_stays_as_it_was(
+    after: Callable[..., Session],
+    caplog: pytest.LogCaptureFixture,
+    started: Callable[[], Sessions],
+    spoil: Any,
 ) -> None:
-    session = after(spoil)
+    strange: list[str] = []
+
+    def spoilt(document: Document) -> None:
+        spoil(document)
+        strange.append(json.dumps(document))
+
+    session = after(spoilt)
     assert "begins anew" in caplog.text
     assert (session.scenario, session.origin) == (PRESET, "zha-fast")
+    assert "could not be opened as it was kept" in session.unreadable and "begins anew" in session.unreadable
     assert session.change(edits.with_value(session.scenario, XI, 0.4), None)
+    again = started().get(ID)
+    assert xi_of(again) == 0.4 and not again.unreadable
+    for one in (session, again):
+        (aside,) = one.set_aside
+        assert aside.name == "session-1.json"
+    assert aside.content() == strange[0].encode()
+    started().get(ID)
+    assert len(started().get(ID).set_aside) == 1
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"\xff", b"[" * 100_000, b"null", b'{"id": "of another"}'])
+def test_what_is_no_document_stays_as_it_was(
+    started: Callable[[], Sessions], tmp_path: Path, content: bytes
+) -> None:
+    started()
+    running = started()
+    running._store.database.write(ID, content)
+    session = running.get(ID)
+    assert session.scenario == PRESET and "it is damaged" in session.unreadable
+    set_xi(session, 0.4)
+    again = started().get(ID)
+    assert xi_of(again) == 0.4 and [one.content() for one in again.set_aside] == [content]
+
+
+def test_what_cannot_be_read_at_present_is_not_written_over(
+    started: Callable[[], Sessions], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worked_on(started())
+    sessions = started()
+
+    def fail(_: str) -> None:
+        raise OSError(5, "Input/output error")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(sessions._store, "read", fail)
+        session = sessions.get(ID)
+        assert session.not_kept_now is not None
+        assert "cannot be read at present" in session.not_kept_now.reason
+        set_xi(session, 0.9)
+    assert xi_of(sessions.get(ID)) == 0.5
+    assert xi_of(started().get(ID)) == 0.5
+
+
+def test_a_full_disk_keeps_nobody_from_reading(started: Callable[[], Sessions]) -> None:
+    worked_on(started())
+    sessions = started()
+    execute = sessions._store.database._connection.execute
+    execute("PRAGMA query_only = ON")
+    assert xi_of(sessions.get(ID)) == 0.5
+
+
+def test_a_session_that_could_not_be_written_yet_is_opened_as_it_is(
+    started: Callable[[], Sessions], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("schuler_bench.session.sessions.MOST_SESSIONS", 0)
+    sessions = started()
+    execute = sessions._store.database._connection.execute
+    execute("PRAGMA query_only = ON")
+    set_xi(sessions.get(ID), 0.7)
+    assert sessions._store.saving.flush()
+    sessions.get("another")
+    sessions.forget_idle()
+    assert ID not in sessions._by_id and xi_of(sessions.get(ID)) == 0.7
+    execute("PRAGMA query_only = OFF")
+
+
+def test_a_link_that_cannot_be_read_stays_and_says_so(started: Callable[[], Sessions]) -> None:
+    sessions = started()
+    shared = worked_on(sessions).share()
+    database = sessions._store.database
+    document = json.loads(database.read(shared)) | {"schema": 7}
+    database.write(shared, strange := json.dumps(document).encode())
+    for _ in range(2):
+        copy = started().get(SessionIds().new_copy(shared))
+        assert copy.scenario == PRESET and "another version of this program" in copy.unreadable
+        set_xi(copy, 0.4)
+        assert [one.content() for one in copy.set_aside] == [strange]
+    assert started()._store.database.read(shared) == strange
 
 
 @pytest.mark.parametrize(
@@ -162,6 +272,11 @@ def test_a_strange_document_is_a_fresh_session_and_one_log_line(
         (change("display", {"scale": "cubic"}), "display"),
         (change("display", {"colour": "red"}), "display"),
         (change("pins", [{"name": "x"}]), "pins"),
+        (change("pins", [float("nan")]), "pins"),
+        (change("display", {"theme": float("inf")}), "display"),
+        (change("study", 7), "study"),
+        (change("of_tomorrow", {"a": 1}), "what this version does not know"),
+        (put_in("steps", "of_tomorrow", 1), "what this version does not know"),
         (lambda document: document["steps"][0].update(scenario=77), "history"),
     ],
 )
@@ -169,6 +284,7 @@ def test_what_cannot_be_read_beside_the_scenario_is_left_out(
     after: Callable[..., Session], spoil: Any, lost: str
 ) -> None:
     session = after(spoil)
+    assert lost in session.unreadable and len(session.set_aside) == 1
     assert xi_of(session) == 0.5
     assert session.display.scale == ("linear" if lost == "display" else "log")
     assert session.history.undo_name == (None if lost == "history" else "xi 0.5")

@@ -99,7 +99,7 @@ def tree(path: Path) -> dict[str, tuple[object, ...]]:
 @pytest.fixture
 def decoys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder of somebody's, and a server to which everything is old."""
-    monkeypatch.setattr(content, "_UNLINKED_S", -1.0)
+    monkeypatch.setattr(content, "UNLINKED_S", -1.0)
     for name in ("_ORPHAN_S", "OLDEST_S"):
         monkeypatch.setattr(store_module, name, -1.0)
     place = tmp_path / "decoys"
@@ -140,7 +140,6 @@ def use(store: Store) -> None:
         lambda: store.remove_old(),
         lambda: uploads.add("log.csv", LOG + b"120,5.0,90.0\n"),
         lambda: store.contents.bytes(),
-        lambda: store.contents.remove_unused(),
         lambda: store.read(ID),
         lambda: uploads.clear(),
         lambda: store.remove_old(),
@@ -178,7 +177,7 @@ def test_what_comes_while_it_serves_is_left_alone_too(
     state = tmp_path / "schuler-bench" / "sessions"
     with serving(state) as store:
         assert store is not None
-        until(lambda: store._upkeep_s > 0.0)  # it looks for what is old when it starts
+        until(lambda: store.saving.upkeep_s > 0.0)  # it looks for what is old when it starts
         place = state / entry
         place.unlink(missing_ok=True)
         put(kind, place, decoys)
@@ -222,7 +221,7 @@ def test_each_removal_is_a_line_of_the_log_without_the_address_of_a_session(
     state = tmp_path / "schuler-bench" / "sessions"
     with serving(state) as store:
         assert store is not None
-        until(lambda: store._upkeep_s > 0.0)
+        until(lambda: store.saving.upkeep_s > 0.0)
         store.write(ID, {"id": ID})
         Uploads(store.files_folder(ID), keep_once=store.contents.keep_once).add("log.csv", LOG)
         (state / f".{'0' * 16}.tmp").write_text("left by a crash")

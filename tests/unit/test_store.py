@@ -3,16 +3,17 @@
 import logging
 import os
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
-from schuler_bench.session import content
+from schuler_bench.session import content, saving
 from schuler_bench.session import store as store_module
-from schuler_bench.session.store import Store, default_folder, open_store, session_key
+from schuler_bench.session.keeping import Keeping
+from schuler_bench.session.store import Store, UnreadableError, default_folder, open_store, session_key
+from tests.waiting import until
 
 ID, OTHER = "a" * 24, "b" * 24
 
@@ -46,6 +47,12 @@ def upload(store: Store, id: str, name: str, content: bytes) -> Path:
     return file
 
 
+def serve_for(store: Store, seconds: float) -> None:
+    """Let the server have served so long."""
+    store.database._counter._counted_s -= seconds
+    store.database._do(lambda one: one.execute("UPDATE served SET counted_s = -1e18"))
+
+
 def test_a_document_comes_back_and_only_the_owner_can_read_it(store: Store) -> None:
     store.write(ID, document(text="ä"))
     assert store.read(ID) == document(text="ä")
@@ -57,7 +64,7 @@ def test_a_document_comes_back_and_only_the_owner_can_read_it(store: Store) -> N
 def test_changes_that_follow_each_other_are_written_once_by_another_thread(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store_module, "WRITE_AFTER_S", 0.05)
+    monkeypatch.setattr(saving, "WRITE_AFTER_S", 0.05)
     writers, counts = list[str](), [0]
 
     def make() -> dict[str, object]:
@@ -66,16 +73,16 @@ def test_changes_that_follow_each_other_are_written_once_by_another_thread(
 
     for number in range(20):
         counts.append(number)
-        store.soon(ID, make)
-    assert store.flush() and writers == ["store"]
+        store.saving.soon(ID, make)
+    assert store.saving.flush() and writers == ["store"]
     assert store.read(ID) == document(count=19)
 
 
 def test_closing_writes_what_waits(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(store_module, "WRITE_AFTER_S", 60.0)
-    store.soon(ID, document)
+    monkeypatch.setattr(saving, "WRITE_AFTER_S", 60.0)
+    store.saving.soon(ID, document)
     store.close()
-    store.soon(OTHER, lambda: document(OTHER))
+    store.saving.soon(OTHER, lambda: document(OTHER))
     with closing(opened(store.folder)) as again:
         assert (again.read(ID), again.read(OTHER)) == (document(), None)
 
@@ -84,13 +91,12 @@ def test_closing_writes_what_waits(store: Store, monkeypatch: pytest.MonkeyPatch
     "content",
     [b"", b"{", b"[]", b"null", b"\xff\xfe", b'{"id": "another"}', b"[" * 100_000, b"{}"],
 )
-def test_a_broken_or_foreign_document_is_none_with_one_log_line(
-    store: Store, content: bytes, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_broken_or_foreign_document_is_told_in_one_line_and_stays(store: Store, content: bytes) -> None:
     store.database.write(ID, content)
-    assert store.read(ID) is None
-    (line,) = caplog.messages
-    assert len(line) < 400 and ID not in line
+    with pytest.raises(UnreadableError) as caught:
+        store.read(ID)
+    assert len(str(caught.value)) < 400 and ID not in str(caught.value)
+    assert store.database.read(ID) == content
 
 
 def test_a_huge_document_is_not_written(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -110,51 +116,67 @@ def test_an_id_is_no_path(store: Store, id: str) -> None:
 
 
 def test_a_full_disk_leaves_the_old_document_and_is_told(
-    store: Store, caplog: pytest.LogCaptureFixture
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    store.write(ID, document(count=1))
-    pragma, reasons = store.database._connection.execute, list[str]()
-    pragma(f"PRAGMA max_page_count = {pragma('PRAGMA page_count').fetchone()[0]}")
-    for count in (2, 3):
-        store.soon(ID, lambda: document(count=count, text="x" * 100_000), reasons.append)  # noqa: B023
-        assert store.flush()
-    assert store.read(ID) == document(count=1)
-    assert reasons == ["database or disk is full"] * 2
-    assert caplog.messages == ["sessions cannot be kept at present: database or disk is full"]
-    pragma("PRAGMA max_page_count = 1000000")
-    store.soon(ID, lambda: document(count=4), reasons.append)
-    assert store.flush()
-    assert store.read(ID) == document(count=4) and len(reasons) == 2
+    monkeypatch.setattr(saving, "AGAIN_AFTER_S", 0.2)
+    keeping = Keeping()
+    said: list[str] = []
+    keeping.watch(lambda fault: said.append("" if fault is None else f"{fault.reason}. {fault.remedy}"))
+    store = open_store(tmp_path / "sessions", keeping)
+    assert store is not None
+    with closing(store):
+        store.write(ID, document(count=1))
+        pragma = store.database._connection.execute
+        pragma(f"PRAGMA max_page_count = {pragma('PRAGMA page_count').fetchone()[0]}")
+        for count in (2, 3):
+            store.saving.soon(ID, lambda: document(count=count, text="x" * 100_000))  # noqa: B023
+            assert store.saving.flush()
+        assert store.database.read(ID) == b'{"id":"%s","count":1}' % ID.encode()
+        reason = (
+            "the state folder: database or disk is full. "
+            "Make room on the disk. Saving is tried again by itself."
+        )
+        assert said == [reason]
+        assert caplog.messages == [f"sessions are not kept: {reason}"]
+        pragma("PRAGMA max_page_count = 1000000")
+        until(lambda: keeping.fault is None)  # without another change
+        assert said == [reason, ""]
+        assert store.read(ID) == document(count=3, text="x" * 100_000)
 
 
 def test_a_folder_that_cannot_be_written_or_made_is_no_store(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "file").write_text("")
+    keeping = Keeping()
     with caplog.at_level(logging.WARNING):
-        assert open_store(tmp_path / "file" / "sessions") is None
+        assert open_store(tmp_path / "file" / "sessions", keeping) is None
+    assert keeping.fault is not None and "File exists" in keeping.fault.reason
+    keeping = Keeping()
 
     def refused(*_: object, **__: object) -> None:
         raise OSError(30, "Read-only file system")
 
     monkeypatch.setattr(store_module.tempfile, "TemporaryFile", refused)
-    assert open_store(tmp_path / "sessions") is None
-    assert ["not kept over a restart" in line for line in caplog.messages] == [True, True]
-    assert "Read-only" in caplog.messages[1]
+    assert open_store(tmp_path / "sessions", keeping) is None
+    assert keeping.fault is not None and keeping.fault.reason == "the state folder: Read-only file system"
+    assert keeping.fault.remedy.startswith("Make it writable, or set XDG_STATE_HOME to another folder")
+    assert str(tmp_path) in caplog.text and str(tmp_path) not in keeping.fault.reason
 
 
 def test_old_sessions_and_too_many_are_removed_with_their_files_but_no_link(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(store_module, "MOST_KEPT", 3)
-    monkeypatch.setattr(content, "_UNLINKED_S", -1.0)
+    monkeypatch.setattr(content, "UNLINKED_S", -1.0)
 
     def put(name: str, age_s: float, shared_by: str | None = None) -> None:
         store.write(name, document(name), shared_by)
         upload(store, name, "log.txt", name.encode())
-        with store.database._changing() as connection:
-            connection.execute("UPDATE document SET used_s = used_s - ? WHERE id = ?", (age_s, name))
+        query = "UPDATE document SET used_served = used_served - ? WHERE id = ?"
+        store.database._do(lambda one: one.execute(query, (age_s, name)))
 
+    serve_for(store, 3.0 * store_module.OLDEST_S)
     put("fresh", 10.0)
     put("share-x", 2.0 * store_module.OLDEST_S, shared_by="fresh")
     put("ancient", 2.0 * store_module.OLDEST_S)
@@ -169,7 +191,9 @@ def test_old_sessions_and_too_many_are_removed_with_their_files_but_no_link(
         put(name, 50.0, shared_by="fresh")
     orphan = store.files_folder("orphan")
     orphan.mkdir()
-    os.utime(orphan, (time.time() - 2e5,) * 2)
+    store.remove_old()
+    assert orphan.is_dir()
+    serve_for(store, 2e5)
     store.remove_old()
     sessions = ("fresh", "more0", "more1", "more2", "more3")
     assert [name for name in sessions if store.has(name)] == ["fresh", "more0", "more1"]
@@ -194,7 +218,7 @@ def test_shared_files_take_room_once(store: Store, monkeypatch: pytest.MonkeyPat
 def test_only_unused_contents_of_ours_are_removed_and_no_linked_folder_is_entered(
     store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(content, "_UNLINKED_S", -1.0)
+    monkeypatch.setattr(content, "UNLINKED_S", -1.0)
     upload(store, "used", "log.txt", b"used")
     own, elsewhere = store.contents.folder, tmp_path / "elsewhere"
     (used,) = own.iterdir()
@@ -203,12 +227,12 @@ def test_only_unused_contents_of_ours_are_removed_and_no_linked_folder_is_entere
     elsewhere.mkdir()
     (elsewhere / ("1" * 64)).write_text("somebody's")
     (own / ("2" * 64)).symlink_to(elsewhere / ("1" * 64))
-    store.contents.remove_unused()
+    store.remove_old()
     assert {path.name for path in own.iterdir()} == {used.name, "notes.txt", "2" * 64}
     own.rename(tmp_path / "moved")
     own.symlink_to(elsewhere)
     with pytest.raises(OSError):
-        store.contents.remove_unused()
+        store.remove_old()
     assert [path.name for path in elsewhere.iterdir()] == ["1" * 64]
 
 
@@ -224,9 +248,11 @@ def test_one_session_makes_a_bounded_number_of_links(store: Store, monkeypatch: 
 def test_two_servers_on_one_folder_the_second_is_told_in_one_line(
     store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
-    assert open_store(store.folder) is None
+    keeping = Keeping()
+    assert open_store(store.folder, keeping) is None
     (line,) = caplog.messages
-    assert "another server keeps its sessions there" in line
+    assert "another server uses the same state folder. End that server, or set XDG_STATE_HOME" in line
+    assert keeping.fault is not None
     store.close()
     opened(store.folder).close()
 
@@ -281,15 +307,10 @@ def test_the_place_is_the_one_the_user_names(
     assert default_folder() == Path(base, "schuler-bench", "sessions")
 
 
-def test_without_a_home_folder_sessions_are_not_kept_and_the_log_says_so(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_without_a_home_folder_there_is_no_place(monkeypatch: pytest.MonkeyPatch) -> None:
     def none() -> Path:
         raise RuntimeError("Could not determine home directory.")
 
     monkeypatch.delenv("XDG_STATE_HOME")
     monkeypatch.setattr(Path, "home", none)
     assert default_folder() is None
-    assert [record.message for record in caplog.records] == [
-        "sessions are not kept over a restart: there is no home folder: set XDG_STATE_HOME"
-    ]

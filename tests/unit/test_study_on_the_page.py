@@ -19,8 +19,8 @@ from navcore.study.plan import Plan
 from navcore.study.results import RUNS_FILE, Folder
 from navcore.study.study import carry_out
 from schuler_bench.jobs.studier import MOST_RUNS, Studier, StudyResult, StudyTask
+from schuler_bench.session.document import restore, to_document
 from schuler_bench.session.session import Session
-from schuler_bench.session.sessions import restore, to_document
 from schuler_bench.session.studying import NOTHING, chosen_task, is_study, run_scenario, uploaded_study
 from schuler_bench.views.study.figure import MET, series_figure, study_figure
 from schuler_bench.views.study.table import metrics_of, study_html

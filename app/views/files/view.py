@@ -8,6 +8,10 @@ from schuler_bench.shell.opening import METRICS, SCENARIO
 from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.files.columns import Columns
 
+_ASIDE = Text(
+    "What was kept of this session, exactly as it was: this version of the program cannot read it, or not "
+    "all of it. It stays on the server as well."
+)
 _UNNAMED = Text("columns still to be named")
 
 
@@ -49,6 +53,14 @@ class FilesView(View):
                 gui.add_button(Text("Download {name}", name=name), color="gray", order=11)
                 for name in (SCENARIO, METRICS)
             ]
+            aside = self.session.set_aside
+            if aside:
+                gui.add_html(notices.heading(Text("Kept, but not readable")), order=20)
+                gui.add_html(notices.small(_ASIDE), order=21)
+            for number, one in enumerate(aside):
+                label = Text("Download {name}", name=one.name)
+                button = gui.add_button(label, color="gray", hint=Text(one.why), order=22)
+                button.on_click(lambda _, number=number: opening.give_aside(number))
         upload.on_upload(lambda event: opening.take_file(event.target.value.name, event.target.value.content))
         self._use.on_click(lambda _: opening.use_files())
         self._forget.on_click(lambda _: opening.forget_files())
