@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import threading
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
@@ -312,14 +313,17 @@ def serve(
     ------
     InputError
         The address cannot be served; that of the cluster is none, or the extra it needs is not installed;
+        a setting in the environment is none;
         something else is in the place of something of ours in the state folder.
     """
+    from schuler_bench.jobs.away import away_seconds
     from schuler_bench.jobs.cluster import check_address
     from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
     from schuler_bench.session.store import checked_folder
 
     begin_logging()
     check_address(cluster)
+    away_seconds(os.environ)
     bound_arenas()
     state = checked_folder()
     server, dashboard = open_dashboard(

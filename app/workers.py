@@ -22,6 +22,7 @@ from navcore.foundation.errors import Fault, InputError
 from schuler_bench.http.access import access_rules
 from schuler_bench.http.address import authority, is_loopback, listen, parse_origins
 from schuler_bench.http.limits import Limits
+from schuler_bench.jobs.away import away_seconds
 from schuler_bench.jobs.cluster import check_address
 from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
 from schuler_bench.jobs.scheduler import WORKERS
@@ -182,6 +183,7 @@ def serve_with_workers(
         raise InputError([Fault("serve", "--workers", count, "is for Linux and macOS")])
     origins, framers = parse_origins(allow_origins), parse_origins(frame_origins, "--frame-origin")
     check_address(cluster)
+    away_seconds(os.environ)
     with ExitStack() as held:
         listener = held.enter_context(listen(host, port))
         bound, loopback = listener.getsockname()[1], is_loopback(listener)

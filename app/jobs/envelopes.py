@@ -64,6 +64,8 @@ class Envelopes(Search[_Asked, Envelope]):
         elif self.asked == asked:
             self.cancel()
             self.words = ()
+        elif self.under_way == asked:  # another page asks, or one that is back
+            return
         elif kind == "seeds" and scenario.strapdown:
             self.cancel()
             self.words = (Text("Not for strapdown runs: it would take {seeds} of them.", seeds=SEEDS),)

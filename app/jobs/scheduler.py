@@ -8,6 +8,10 @@ after a restart) goes on only while nothing else does and no answer is being dra
 it asks whether it is cancelled; so that none stands still for ever under lasting load, each gets a short turn
 after a while all the same. All jobs together are admitted by their estimated memory.
 
+A visitor none of whose pages is open is *away*. What such a visitor has asked for goes on for a while
+(`schuler_bench.jobs.away`), behind everything that those ask for who are there: it begins only when none of
+that waits, takes no thread from it, and stands still meanwhile without a turn of its own.
+
 A fourth lane is for heavy jobs that a Dask cluster computes (`schuler_bench.jobs.cluster`): they take turns
 among themselves, and neither cores nor memory of this machine.
 """
@@ -21,6 +25,7 @@ from enum import Enum
 from pathlib import Path
 
 from navcore.foundation.cores import cores
+from schuler_bench.jobs.away import AWAY_S, Away, away_seconds
 
 GIB = 1 << 30
 WORKERS = "SCHULER_WORKERS"
@@ -92,6 +97,7 @@ class Ticket:
     _order: int = 0
     _since_s: float = 0.0
     _still: bool = False
+    _given_up: bool = False
 
 
 class Scheduler:
@@ -107,10 +113,18 @@ class Scheduler:
         While others are about, a visitor's next answer is begun only after this many times the time that
         the last one took. Answers share the interpreter: whoever asks for the next one without a pause, by
         hand or by a script, would otherwise take half of it from the one who asks now and then.
+    away_s : float
+        So long the jobs of a visitor who is away go on.
+
+    Attributes
+    ----------
+    away : Away
+        Visitors none of whose pages is open.
     """
 
-    def __init__(self, cores: int, memory_bytes: float, pause: float = 0.0) -> None:
+    def __init__(self, cores: int, memory_bytes: float, pause: float = 0.0, away_s: float = AWAY_S) -> None:
         self.cores, self.memory_bytes, self.pause = cores, memory_bytes, pause
+        self.away = Away(away_s)
         self._paused_s: dict[object, float] = {}
         self._last_answer_s: dict[object, float] = {}
         self._changed = threading.Condition()
@@ -127,12 +141,19 @@ class Scheduler:
             self._count += 1
             ticket._order = self._count
             self._waiting.append(ticket)
-            lane = ticket.load.lane
-            if not self._idle[lane] and self._threads[lane] < self._most(lane):
-                self._threads[lane] += 1
-                name = f"{lane.value}-{self._threads[lane]}"
-                threading.Thread(target=self._loop, args=(lane,), name=name, daemon=True).start()
+            self._staff(ticket.load.lane)
             self._changed.notify_all()
+
+    def _staff(self, lane: Lane) -> None:
+        """Start a thread for what waits, if there may be one more."""
+        if not self._idle[lane] and self._threads[lane] - self._lent(lane) < self._most(lane):
+            self._threads[lane] += 1
+            name = f"{lane.value}-{self._threads[lane]}"
+            threading.Thread(target=self._loop, args=(lane,), name=name, daemon=True).start()
+
+    def _lent(self, lane: Lane) -> int:
+        """Threads that are with jobs of visitors who are away, and are not to be missed by the others."""
+        return sum(t.load.lane is lane and self._is_away(t) for t in self._running)
 
     def _most(self, lane: Lane) -> int:
         """Jobs of a lane at once; where nobody waits for it at every step, a core stays free for answers."""
@@ -148,6 +169,39 @@ class Scheduler:
                 return False
             self._waiting.remove(ticket)
             return True
+
+    def leave(self, visitor: object) -> None:
+        """The visitor's last page has gone: what was asked for gives way to everybody's who is there."""
+        with self._changed:
+            self.away.leave(visitor)
+            for lane in Lane:
+                lent = [t for t in self._running if t.load.lane is lane and self._is_away(t)]
+                lent.sort(key=lambda ticket: self.away.since_s(ticket.visitor))
+                # Each may hold a process, and memory: those of who left first make room.
+                for ticket in lent[: max(0, len(lent) - self._most(lane))]:
+                    ticket._given_up = True
+                if any(t.load.lane is lane for t in self._waiting):
+                    self._staff(lane)
+            self._changed.notify_all()
+
+    def come_back(self, visitor: object) -> None:
+        """A page of the visitor is open."""
+        with self._changed:
+            if self.away.come_back(visitor):
+                self._changed.notify_all()
+
+    def expects(self, visitor: object) -> bool:
+        """Whether a visitor is away, and may still come back for what was asked for."""
+        with self._changed:
+            return visitor in self.away and not self.away.too_long(visitor)
+
+    def given_up(self, ticket: Ticket) -> bool:
+        """Whether a job under way is to end because its visitor has been away for too long."""
+        with self._changed:
+            return ticket._given_up or self.away.too_long(ticket.visitor)
+
+    def _is_away(self, ticket: Ticket) -> bool:
+        return ticket.visitor in self.away
 
     def give_way(self, ticket: Ticket, ended: Callable[[], bool]) -> None:
         """Stand still while more urgent work wants the cores; called by the job itself, now and then.
@@ -167,12 +221,13 @@ class Scheduler:
             if began_s - ticket._since_s < _TURN_S:
                 return
             until_s = began_s + _PATIENCE_S[lane.value]
-            while self._must_wait(ticket) and not ended() and time.monotonic() < until_s:
+            while self._must_wait(ticket) and not ended():
+                if not self._is_away(ticket) and time.monotonic() >= until_s:
+                    ticket._since_s = time.monotonic()
+                    break
                 ticket._still = True
                 self._changed.wait(_LOOK_S)
             ticket._still = False
-            if time.monotonic() >= until_s:
-                ticket._since_s = time.monotonic()
 
     def figures(self) -> dict[str, float]:
         """Count what waits and runs now, for ``/metrics``: jobs of each lane, estimated bytes under way."""
@@ -190,33 +245,47 @@ class Scheduler:
             since_s = time.monotonic() - _ABOUT_S
             about = {v for v, s in self._last_answer_s.items() if s > since_s}
             about |= {t.visitor for t in (*self._waiting, *self._running) if t.load.lane is not Lane.SPARE}
-            return bool(about - {visitor})
+            return any(one != visitor and one not in self.away for one in about)
 
     # ------------------------------------------------------------ choosing
 
     def _must_wait(self, ticket: Ticket) -> bool:
         mine = ticket.load.lane
         waiting, running = _here(self._waiting), _here(self._running)
+        if self._is_away(ticket):
+            if mine is Lane.CLUSTER:
+                return any(t.load.lane is mine and not self._is_away(t) for t in self._waiting)
+            others = (*waiting, *(t for t in running if not t._still))
+            return self._drawn_of_late() or any(not self._is_away(t) for t in others)
+        waiting, running = ([t for t in some if not self._is_away(t)] for some in (waiting, running))
         if any(t.load.lane is Lane.ANSWER or mine is Lane.SPARE is not t.load.lane for t in waiting):
             return True
         active = [t for t in running if not t._still and t is not ticket]
         if mine is Lane.SPARE:
-            since_s = time.monotonic() - _DRAWN_S
-            drawn = all(answered_s < since_s for answered_s in self._last_answer_s.values())
-            return not drawn or any(t.load.lane is not Lane.SPARE for t in active)
+            return self._drawn_of_late() or any(t.load.lane is not Lane.SPARE for t in active)
         return sum(t.load.lane is not Lane.SPARE for t in active) >= self._most(mine)
 
+    def _drawn_of_late(self) -> bool:
+        """Whether the picture of an answer may still be drawn."""
+        since_s = time.monotonic() - _DRAWN_S
+        return any(answered_s >= since_s for answered_s in self._last_answer_s.values())
+
     def _next(self, lane: Lane) -> Ticket | None:
-        now_s = time.monotonic()
-        running = _here(self._running)
+        now_s, most = time.monotonic(), self._most(lane)
+        running, lent = _here(self._running), self._lent(lane)
         held = sum(t.load.bytes for t in running)
-        free = [
-            t
-            for t in self._waiting
-            if t.load.lane is lane
-            and self._due_s(t) <= now_s
-            and (not running or held + t.load.bytes <= self.memory_bytes)
-        ]
+        due = [t for t in self._waiting if t.load.lane is lane and self._due_s(t) <= now_s]
+        there = [t for t in due if not self._is_away(t)]
+        if sum(t.load.lane is lane for t in self._running) - lent >= most:
+            return None
+        if not there and lent < most:
+            due = [t for t in due if not self.away.too_long(t.visitor) and not self._must_wait(t)]
+        else:
+            due = there
+        free = [t for t in due if not running or held + t.load.bytes <= self.memory_bytes]
+        if there and not free:
+            for ticket in running:
+                ticket._given_up |= self._is_away(ticket)  # the memory is wanted by those who are there
         if not free or (lane is Lane.SPARE and self._must_wait(free[0])):
             return None
         chosen = min(free, key=lambda t: (self._served.get(t.visitor, 0), t._order))
@@ -246,6 +315,9 @@ class Scheduler:
     def _loop(self, lane: Lane) -> None:
         while True:
             with self._changed:
+                if self._threads[lane] - self._lent(lane) > self._most(lane):  # one was lent, and is back
+                    self._threads[lane] -= 1
+                    return
                 self._idle[lane] += 1
                 while (ticket := self._next(lane)) is None:
                     self._changed.wait(self._until_due_s(lane))
@@ -263,7 +335,9 @@ class Scheduler:
                 del ticket
 
     def _until_due_s(self, lane: Lane) -> float | None:
-        dues = [self._due_s(t) for t in self._waiting if t.load.lane is lane]
+        dues = [
+            self._due_s(t) for t in self._waiting if t.load.lane is lane and not self.away.too_long(t.visitor)
+        ]
         if not dues:
             return None
         left_s = min(dues) - time.monotonic()
@@ -306,7 +380,8 @@ def scheduler() -> Scheduler:
         if not _one:
             workers = int(os.environ.get(WORKERS, "1"))
             cores = cores_of_machine() if workers == 1 else max(1, cores_of_machine() // workers)
-            _one.append(Scheduler(cores, _PART_FOR_RUNS * memory_of_machine() / workers, pause=1.0))
+            memory_bytes = _PART_FOR_RUNS * memory_of_machine() / workers
+            _one.append(Scheduler(cores, memory_bytes, pause=1.0, away_s=away_seconds(os.environ)))
         return _one[0]
 
 

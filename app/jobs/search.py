@@ -16,6 +16,7 @@ from schuler_bench.jobs.worker import ElsewhereLost, Watch, Worker
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
+GIVEN_UP = Text("Stopped: no page of this session was open for long.")
 _STOPPING = Text("Stopping: what was found so far is kept.")
 _log = logging.getLogger("schuler.search")
 
@@ -188,7 +189,7 @@ class Search(Generic[Asked, Found]):
             self._tell()
             raise
         except StoppedError:
-            words = self._because()
+            words = self._because(GIVEN_UP if watch.given_up() else "")
         except InputError as error:
             words = self._refused(error)
         except Exception as error:
@@ -196,12 +197,13 @@ class Search(Generic[Asked, Found]):
             name, _, why = what_failed(error).partition(": ")
             words = (Text("Something went wrong: {name}: {error}", name=name, error=why),)
         complete = result is not None and self._complete(result)
+        given_up = not complete and watch.given_up()
         with self._lock:
             if self._job is not job:  # stopped, or another one waits
                 return
             self.fraction = self._job = None
-            ended_early = self._halted if result is None else not complete
-            self.words = words or (self._because() if ended_early else ())
+            ended_early = given_up or (self._halted if result is None else not complete)
+            self.words = words or (self._because(GIVEN_UP if given_up else "") if ended_early else ())
             if complete:
                 self.result, self.asked = result, asked
         self._ended() if complete else self._tell()

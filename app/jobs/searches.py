@@ -16,7 +16,7 @@ _log = logging.getLogger("schuler.searches")
 
 
 class Searches:
-    """The searches of one session; without an open page none goes on.
+    """The searches of one session. They go on when its last page has gone, as the scheduler lets them.
 
     Parameters
     ----------
@@ -55,13 +55,9 @@ class Searches:
             self._watchers.append(changed)
 
     def unwatch(self, changed: Callable[[], None]) -> None:
-        """Forget a page that has gone; after the last one all searches end."""
+        """Forget a page that has gone."""
         with self._lock:
             self._watchers = [other for other in self._watchers if other != changed]
-            alone = not self._watchers
-        if alone:
-            for search in self._all:
-                search.cancel()
 
     def changed(self) -> None:
         """The scenario has changed: the processors belong to its run."""

@@ -33,6 +33,8 @@ class Watch:
         ``give_way(ended)`` stands still while more urgent jobs want the cores.
     lane : Lane
         In which the job was let on.
+    given_up : callable, optional
+        Whether the visitor has been away for so long that the job is to end.
     """
 
     def __init__(
@@ -40,8 +42,9 @@ class Watch:
         newer_waits: Callable[[], bool],
         give_way: Callable[[Callable[[], bool]], None] = lambda _: None,
         lane: Lane = Lane.ANSWER,
+        given_up: Callable[[], bool] = lambda: False,
     ) -> None:
-        self.lane = lane
+        self.lane, self.given_up = lane, given_up
         self.began = self.asked_s = time.monotonic()
         self.stop_asked = threading.Event()
         self._newer_waits, self._give_way = newer_waits, give_way
@@ -63,10 +66,11 @@ class Watch:
     def cancelled(self) -> bool:
         """Whether to stop now: asked by the user, or superseded and not about to end; may take time."""
         self._give_way(self._ended)
-        return self.stop_asked.is_set() or (self.elapsed_s > SUPERSEDE_AFTER_S and self.superseded())
+        ended = self.stop_asked.is_set() or self.given_up()
+        return ended or (self.elapsed_s > SUPERSEDE_AFTER_S and self.superseded())
 
     def _ended(self) -> bool:
-        return self.stop_asked.is_set() or self.superseded()
+        return self.stop_asked.is_set() or self.superseded() or self.given_up()
 
 
 class Worker(Generic[Job]):
@@ -170,6 +174,7 @@ class Worker(Generic[Job]):
                 lambda: bool(self._slot),
                 lambda ended: self._turns.give_way(ticket, ended),
                 ticket.load.lane,
+                lambda: self._turns.given_up(ticket),
             )
             watch.asked_s = self._asked_s
         try:

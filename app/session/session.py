@@ -15,6 +15,7 @@ from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.envelopes import Envelopes, Simulate
 from schuler_bench.jobs.load import refuse_too_large, run_load, runs_on_demand
 from schuler_bench.jobs.long_runs import run_for
+from schuler_bench.jobs.scheduler import scheduler
 from schuler_bench.jobs.searches import Searches
 from schuler_bench.jobs.words import for_a_page
 from schuler_bench.jobs.worker import Watch, Worker
@@ -136,23 +137,24 @@ class Session:
     # ------------------------------------------------------------ pages
 
     def attach(self, view: View) -> None:
-        """Add an open page; a run is begun if there is none to show."""
+        """Add an open page; a run is begun if there is none to show, or only one of an earlier scenario."""
+        scheduler().come_back(self._name)
         with self.lock:
             self._views.append(view)
             if self.presenter is not None:
                 self._tell(lambda other: other.presenter_changed())
-            if self.run is None:
-                self._worker.submit(self.state)
+            if self.run is None or (self.outdated and not runs_on_demand(self.scenario)):
+                if not self._worker.busy:
+                    self._worker.submit(self.state)
             else:
                 self.envelopes.follow(self.run.scenario, self.display.envelope)
 
     def detach(self, view: View) -> None:
-        """Remove a closed page; without any page nothing runs on."""
+        """Remove a closed page; without any, what was asked for goes on behind all others for a while."""
         with self.lock:
             self._views = [other for other in self._views if other is not view]
             if not self._views:
-                self._worker.cancel()
-                self.envelopes.cancel()
+                scheduler().leave(self._name)
             if self.presenter is view:
                 self.present(None)
             elif self.presenter is not None:
@@ -163,6 +165,11 @@ class Session:
         """Number of open pages."""
         with self.lock:
             return len(self._views)
+
+    @property
+    def expected(self) -> bool:
+        """Whether its last page has gone so lately that it may come back for what was asked for."""
+        return scheduler().expects(self._name)
 
     def tell_front(self, view: View, front: Set[str]) -> None:
         """Let the watchers follow the tabs that the presenting page brings to the front."""
@@ -328,6 +335,7 @@ class Session:
         """End the workers and remove the uploaded files, unless they are to be found again."""
         for working in (self._worker, self.searches, self.pins, self.envelopes):
             working.stop()
+        scheduler().come_back(self._name)  # there is nothing left to count
         if not keep_files:
             self.uploads.clear()
 

@@ -261,7 +261,8 @@ class Sessions:
             session.close(keep_files=self._store is not None)
         for session in idle[: max(0, len(idle) - MOST_IDLE_RUNS)]:
             session.run = None
-            session.verifier.forget()
+            if not session.expected:
+                session.verifier.forget()
 
 
 def first_scenario() -> tuple[Scenario, str]:

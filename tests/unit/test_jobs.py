@@ -128,8 +128,9 @@ def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
     searches.explain(of_the_ship())
     assert finder.begun.wait(5.0)
     searches.unwatch(watch)
-    assert searches.asking["why"].wait_idle(5.0)
+    assert searches.asking["why"]._worker.busy, "what was begun goes on"
     searches.stop()
+    assert searches.asking["why"].wait_idle(5.0)
 
 
 def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None:
