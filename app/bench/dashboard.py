@@ -68,7 +68,7 @@ def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: i
         visitor.set(PAGE_STATE, window)
         visitor.wait_for_run(1)
         _choose(visitor, "scenario", "sikuliaq-like")
-        _choose(visitor, "duration (h), exact", 24.0)
+        _choose(visitor, "duration (h), exact", "24")
         visitor.ask("edit-method", "2")
         visitor.control(ZETA)
         visitor.rest(1.0)

@@ -81,11 +81,6 @@ MENDS = (
         "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX+` plotly-container`,",
     ),
     Mend(
-        "a number that comes in one piece is taken",
-        "i=O.current?RA(O.current,r.selectionEnd):LA(T,e)",
-        "i=LA(T,e)",
-    ),
-    Mend(
         "of a block of HTML only what differs is made anew",
         "e.innerHTML=n}}break;case`multiple`:e.multiple=r&&",
         "window.schuler.fill(e,n)}}break;case`multiple`:e.multiple=r&&",

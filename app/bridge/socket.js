@@ -6,12 +6,11 @@
 // looks for the messages to and from the worker.
 (() => {
   const PERIOD_MS = 30;
-  const TYPING_MS = 400; // so long a number that is being typed waits for its next letter: "540" may become "540 min"
   const Plain = window.Worker;
   // viser takes the whole address of the page but for its query: what follows a # would be no address of a websocket.
   const ADDRESS = `${location.origin.replace("http", "ws")}${location.pathname.replace(/\/$/, "")}`;
   const waiting = new Map(); // by control; the newest is last
-  const held = new Map(); // what is being typed, by control: {message, timer}
+  const held = new Map(); // what is being typed, by control: {message, timer}; it waits for its end
   let socket = null;
   let resting = false;
 
@@ -59,21 +58,25 @@
     if (!resting) flush();
   }
 
-  // Enter, or another control: nothing more is typed.
-  for (const kind of ["keydown", "focusout", "pointerdown"]) {
-    addEventListener(kind, (event) => (kind !== "keydown" || event.key === "Enter") && [...held.keys()].forEach(release));
+  // Enter, another control, or the end of the page: nothing more is typed.
+  for (const kind of ["keydown", "focusout", "pointerdown", "pagehide"]) {
+    addEventListener(kind, (event) => (kind !== "keydown" || event.key === "Enter") && window.schuler.end());
   }
 
   window.schuler = {
     // A message of viser's page: of one control's values the newest, at most one in 30 ms, in the order of their changes.
-    // A number waits while it is typed (boxes.js).
+    // A number waits while it is typed: boxes.js says how many ms.
     send(message) {
       const control = message.uuid;
       window.schuler.forget(control);
-      [...held.keys()].forEach(release);
-      if (message.type !== "GuiUpdateMessage" || !window.schuler.typing?.(control)) return enqueue(message);
-      held.set(control, { message, timer: setTimeout(() => release(control), TYPING_MS) });
+      const wait = message.type === "GuiUpdateMessage" ? (window.schuler.typing?.(control) ?? 0) : 0;
+      if (wait === 0) return enqueue(message);
+      held.set(control, { message, timer: wait < Infinity ? setTimeout(() => release(control), wait) : 0 });
     },
+    // What is being typed is at its end.
+    end: () => [...held.keys()].forEach(release),
+    // Whether what is being typed in a control is not at its end.
+    holds: (control) => held.has(control),
     // Forget what was being typed in a control.
     forget(control) {
       clearTimeout(held.get(control)?.timer);

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from typing import TYPE_CHECKING, Any
 
+from schuler_bench.bridge.boxes import LIST, mark_number_box
 from schuler_bench.bridge.controls import id_of, set_slider_range
+from schuler_bench.bridge.mends import plain_viser
 from schuler_bench.editing import form, typed
 from schuler_bench.editing.choices import choice_words, chosen
 from schuler_bench.editing.form import FieldSpec, Path, Slider
@@ -15,8 +18,6 @@ from schuler_bench.shell import notices
 if TYPE_CHECKING:
     import viser
 
-DECIMALS = 12
-"""Decimals that a number box takes and shows."""
 _TEXTS = {
     "roots": (typed.read_roots, typed.write_roots),
     "numbers": (typed.read_numbers, typed.write_numbers),
@@ -25,7 +26,8 @@ _TEXTS = {
 """Kinds of fields that are shown as text: how that is read and written."""
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
-_CAST: dict[str, Callable[[Any], Any]] = {"number": float, "flag": bool, "choice": choice_words}
+_NUMBERS = ("number", "integer")
+_CAST: dict[str, Callable[[Any], Any]] = {"flag": bool, "choice": choice_words}
 _UNKNOWN = object()
 
 Edit = Callable[["Control", bool], None]
@@ -95,17 +97,17 @@ class Control:
             )
         if spec.kind == "flag":
             return gui.add_checkbox(spec.label, bool(value), hint=hint, order=order)
-        if spec.kind not in ("integer", "number"):
-            return gui.add_text(spec.label, self.as_text(value), hint=hint, order=order)
+        if spec.kind not in _NUMBERS:
+            box = gui.add_text(spec.label, self.as_text(value), hint=hint, order=order)
+            if spec.kind in _TEXTS:
+                mark_number_box(gui, box, LIST)
+            return box
         label, slider = spec.label + (EXACT if spec.slider is not None else ""), spec.slider
-        if spec.kind == "integer":
-            return gui.add_number(label, int(value), step=1, hint=hint, order=order + 0.2)
         step = 1.0
-        if slider is not None:
+        if slider is not None and spec.kind == "number":
             step = form.round_step(slider.low) if slider.log else slider.step
-        # Explicitly a float, or viser would cast every later value to a whole number.
-        box = gui.add_number(label, float(value or 0.0), step=step, hint=hint, order=order + 0.2)
-        box.precision = DECIMALS
+        box = gui.add_text(label, self.as_text(value), hint=hint, order=order + 0.2)
+        mark_number_box(gui, box, step)
         return box
 
     # ------------------------------------------------------------ showing
@@ -134,6 +136,15 @@ class Control:
         self.value, self._last, self._behind = value, _UNKNOWN, self._slider_moved
         if not self._slider_moved:
             self._show_on_slider(value)
+            if self.spec.kind in _NUMBERS and not _is_plain(self._box.known):
+                self._box.show(self.as_text(value))
+
+    def restore(self) -> None:
+        """Show the last good value in the place of one that is refused."""
+        self._last = _UNKNOWN
+        if self.value is None:
+            self._box.show(self._as_shown(None))
+        self.show(self.value)
 
     def catch_up(self) -> None:
         """Show in the box what its slider has given."""
@@ -152,26 +163,32 @@ class Control:
         self._slider.show(slider.position(value))
 
     def _as_shown(self, value: Any) -> Any:
-        if self.spec.kind in _CAST:
-            return _CAST[self.spec.kind](value)
-        return value if self.spec.kind == "integer" else self.as_text(value)
+        return _CAST[self.spec.kind](value) if self.spec.kind in _CAST else self.as_text(value)
 
     def _given(self, shown: Any) -> Any:
         return chosen(self.spec.choices, shown) if self.spec.kind == "choice" else shown
 
     def as_text(self, value: Any) -> str:
-        """Text of a value in a text box."""
+        """Text of a value in a text box; a number that is not given is marked below its box."""
         kind = self.spec.kind
+        if kind in _NUMBERS:
+            return typed.write_number(value or 0)
         return _TEXTS[kind][1](value) if kind in _TEXTS else str(value or "")
 
     def read(self, entered: Any) -> Any:
         """Value of the field from what its box holds; raises ValueError for text that cannot be read."""
         kind = self.spec.kind
+        if kind in _NUMBERS and isinstance(entered, str):
+            return typed.read_typed(entered, typed.unit_of(self.spec.label), whole=kind == "integer")
         return _TEXTS[kind][0](entered) if kind in _TEXTS else entered
 
     @property
     def held(self) -> Any:
         """Value that the box holds, or is to show."""
+        if self.spec.kind in _NUMBERS and not self._behind:
+            with suppress(ValueError):
+                return self.read(self._box.handle.value)
+            return self.value
         return self._given(self._as_shown(self.value) if self._behind else self._box.handle.value)
 
     @property
@@ -180,9 +197,18 @@ class Control:
         return self._widgets[0 if self._slider_moved else -1].awaited
 
     @property
+    def holds_numbers(self) -> bool:
+        """Whether its box is one for a number, or for several."""
+        return self.spec.kind in (*_NUMBERS, *_TEXTS)
+
+    @property
     def typed(self) -> bool:
-        """Whether the last value was typed letter by letter, so that a wrong one may only be unfinished."""
-        return self.spec.kind not in ("choice", "flag") and not self._slider_moved
+        """Whether the last value came letter by letter, so that a wrong one may only be unfinished.
+
+        The page sends a number, or several, when it is complete (static/boxes.js).
+        """
+        whole = self.holds_numbers and not plain_viser()
+        return self.spec.kind not in ("choice", "flag") and not whole and not self._slider_moved
 
     def mark(self, words: str) -> None:
         """Say below the control where its value is from, if it is not given."""
@@ -211,6 +237,14 @@ class Control:
     def ids(self) -> list[str]:
         """Ids of its widgets in viser."""
         return [id_of(widget.handle) for widget in self._widgets]
+
+
+def _is_plain(text: str) -> bool:
+    """Whether a box holds a number as it is shown there: it may be typed on, and is left alone."""
+    try:
+        return text.isascii() and math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _marks(slider: Slider) -> tuple[tuple[float, str], tuple[float, str]]:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.numbers import NotANumber
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
@@ -155,20 +157,23 @@ class Editor:
         with self._session.lock, self._client.atomic():
             if self._closed or control.removed or control.moving or self._doubts.pop(control, None) is None:
                 return
-            control.show(control.value)
-            number = control.spec.kind == "number" and control.value is not None
-            kept = f"{control.value:.9g}" if number else control.as_text(control.value)
+            control.restore()
+            kept = control.as_text(control.value)
             if isinstance(error, InputError):
                 field = ".".join(map(str, control.spec.path))
-                lines: list[str] = [notices.refusal(fault, kept, field, entered) for fault in error.faults]
-            else:
-                lines = [
-                    Text(
-                        "{shown!r} was refused: cannot be read ({kept} is kept)",
-                        shown=entered,
-                        kept=kept,
-                    )
+                typed = control.holds_numbers and isinstance(entered, str)
+                faults = [_as_given(fault, field, entered) for fault in error.faults]
+                lines: list[str] = [
+                    notices.refusal(fault, kept, field, entered, typed=typed) for fault in faults
                 ]
+            else:
+                allowed = error.allowed if isinstance(error, NotANumber) else Text("cannot be read")
+                lines = [notices.refusal(Fault("", "", entered, allowed), kept, typed=True)]
             control.refuse(lines)
         notices.tell(self._client, Text("{label}: not taken over", label=control.spec.label), lines)
         self._client.flush()
+
+
+def _as_given(fault: Fault, field: str, entered: Any) -> Fault:
+    """Return a fault of a box's own number with the text that was typed for it."""
+    return replace(fault, value=entered) if isinstance(entered, str) and fault.field == field else fault

@@ -86,7 +86,9 @@ def small(text: str) -> str:
     )
 
 
-def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = None) -> str:
+def refusal(
+    fault: Fault, kept: str = "", field: str = "", entered: object = None, *, typed: bool = False
+) -> str:
     """One fault in words, for a reader who looks at a control.
 
     Parameters
@@ -99,6 +101,8 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
         The control's own field, dotted. Where the fault is in another field, both are told.
     entered : object
         What the control was given.
+    typed : bool
+        It is a text that was typed for a number: it stands in quotation marks, so that a blank is seen.
 
     Returns
     -------
@@ -111,11 +115,10 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
         return Text(
             "{shown} does not go with {other}: {told}", shown=_excerpt(entered), other=other, told=remedy
         )
-    return (
-        remedy
-        if fault.value is None
-        else Text("{shown} was refused: {told}", shown=_excerpt(fault.value), told=remedy)
-    )
+    if fault.value is None:
+        return remedy
+    shown = _excerpt(repr(fault.value) if typed else fault.value)
+    return Text("{shown} was refused: {told}", shown=shown, told=remedy)
 
 
 def fault_lines(error: InputError) -> list[str]:

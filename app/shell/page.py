@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from schuler_bench.bridge.boxes import NumberBoxes
 from schuler_bench.bridge.server import leaving_is_no_fault
 from schuler_bench.bridge.texts import keep_names
 from schuler_bench.jobs.words import what_failed
@@ -74,6 +75,7 @@ class Page:
         keep_names(self.client, GivenNames(session))
         self._reports = Reports(gui, self._on_window, self._pace.on_painted)
         self.commands = Commands(gui, self._command_failed)
+        NumberBoxes(gui)
         css = page_styles(kinds, self._reports.window_id, self.commands.box_id)
         gui.add_html(f"<style>{css}</style>", order=0)
         self.client.flush()

@@ -6,12 +6,10 @@ import operator
 from functools import lru_cache
 from typing import Any
 
-from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets
 from schuler_bench.bridge.controls import lock_controls
 from schuler_bench.editing.edits import disturbances_toml, method_toml, paste
-from schuler_bench.editing.typed import read_typed, unit_of
 from schuler_bench.jobs.words import without_folders
 from schuler_bench.session.history import changed_fields
 from schuler_bench.session.view import View
@@ -80,7 +78,6 @@ class Palette:
             Command("stop", lambda _: session.cancel_run(), Text("Stop the run")),
             Command("keys", lambda _: ask("keys", ""), Text("Keys: what they do"), ("?",), watcher=True),
             Command("tab", lambda name: ask("tab", name), watcher=True),
-            Command("typed", self._typed),
             Command("reset-named", self._reset_named),
             Command(
                 COPY_METHOD,
@@ -189,23 +186,6 @@ class Palette:
 
     def _control(self, id: str) -> Control | None:
         return next((control for control in self._frame.controls() if id.strip() in control.ids), None)
-
-    def _typed(self, argument: str) -> None:
-        """Take over a number typed with a unit: ``ID TAB TEXT``."""
-        id, _, text = argument.partition("\t")
-        control = self._control(id)
-        if control is None or control.spec.kind not in ("number", "integer"):
-            return
-        name = control.spec.label
-        try:
-            value = read_typed(text.strip(), unit_of(name))
-        except ValueError as error:
-            raise InputError(Fault("", name, text.strip()[:40], str(error))) from None
-        if control.spec.kind == "integer":
-            if value != int(value):
-                raise InputError(Fault("", name, text.strip()[:40], Text("must be a whole number")))
-            value = int(value)
-        self._frame.editor.put(control, value, "")
 
     def _reset_named(self, id: str) -> None:
         control = self._control(id)

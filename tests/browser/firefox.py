@@ -126,9 +126,10 @@ class Firefox:
             time.sleep(0.05)
         return value
 
-    def press(self, key: str) -> None:
-        """Press a key in what has the focus: a letter, or the private code of WebDriver."""
-        keys = [{"type": kind, "value": key} for kind in ("keyDown", "keyUp")]
+    def press(self, key: str, *held: str) -> None:
+        """Press a key while others are held: letters, or private codes of WebDriver."""
+        order = [("keyDown", each) for each in (*held, key)] + [("keyUp", each) for each in (key, *held)]
+        keys = [{"type": kind, "value": each} for kind, each in order]
         actions = [{"type": "key", "id": "keyboard", "actions": keys}]
         self.send("input.performActions", context=self._page, actions=actions)
 

@@ -16,6 +16,7 @@ from navcore.scenario.file import scenario_hash
 from navcore.scenario.model import Scenario
 from schuler_bench.bench.visitor import decoded
 from schuler_bench.editing import edits
+from schuler_bench.editing.typed import write_number
 from schuler_bench.shell.page import Page
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.reports import PAGE_STATE
@@ -227,7 +228,8 @@ class Wire:
         """Set a control of a field; return how many pictures of each kind changed."""
         label = self.named(box_labels(name) if exact else slider_labels(name))
         number, uuid = self.session.run_number, self.controls[label]["uuid"]
-        self._values[uuid] = words_of(name, value)
+        number_box = exact and isinstance(value, int | float) and not isinstance(value, bool)
+        self._values[uuid] = write_number(value) if number_box else words_of(name, value)
         self.visitor.set(uuid, self._values[uuid])
         eventually(lambda: self.session.run_number > number, 60.0)
         self.catch_up()

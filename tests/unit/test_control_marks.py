@@ -18,7 +18,7 @@ def gui() -> Any:
 
     return SimpleNamespace(
         add_slider=lambda label, low, high, step, value, **_: add(label, value),
-        add_number=add,
+        add_text=add,
         add_html=add,
     )
 

@@ -64,7 +64,6 @@ window.schuler.words = {
   "Copy the HTML of a frame that shows this view as it is now": "复制以当前样子显示此视图的框架 HTML",
   "Embed": "嵌入",
   "Copied": "已复制",
-  "{0}: value with its unit, Enter takes it over": "{0}：带单位的数值，按 Enter 采用",
   "Dividers of the page": "页面分隔条",
   "Width of the controls": "控件栏宽度",
   "Width of the 3D view": "三维视图宽度",

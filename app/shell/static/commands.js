@@ -39,7 +39,10 @@
   Object.assign(window.schuler, {
     copy: copyText,
     // Every one of these is carried out, in order.
-    command: (name, ...words) => ask(name, words),
+    command(name, ...words) {
+      window.schuler.end();
+      ask(name, words);
+    },
     // Of these, for what changes continuously, the next of the same name replaces one that is not yet sent.
     stream: (name, ...words) => ask(name, words, { onlyLatest: true }),
     // What the page says by itself: it waits too while the user moves something, whose value it would displace.
@@ -57,9 +60,6 @@
 
   // ------------------------------------------------------------ keys
 
-  // A number box takes no letters: there they stay keys, so that P pins while a value is being typed.
-  const NUMBER = ".mantine-NumberInput-input";
-  const LETTER = /^[a-z?]$/i;
   const TYPED = "input:not([type=checkbox]):not([type=radio]):not([type=button]), textarea, select, [contenteditable]";
   let keys = {};
   let read = "";
@@ -77,8 +77,7 @@
   // Before viser's own listener, on the document, which moves the camera by letters and arrows.
   document.documentElement.addEventListener("keydown", (event) => {
     const target = event.target instanceof Element ? event.target : document.body;
-    const letter = target.closest(NUMBER) && LETTER.test(event.key) && !event.ctrlKey && !event.metaKey && !event.altKey;
-    if (event.defaultPrevented || (target.closest(TYPED) && !letter) || target.closest("[role=dialog], dialog")) return;
+    if (event.defaultPrevented || target.closest(TYPED) || target.closest("[role=dialog], dialog")) return;
     // These two keys press what has the focus.
     if ([" ", "Enter"].includes(event.key) && target.closest("button, a, summary, [role=button], [role=tab]")) return;
     const name = command(event);
@@ -92,7 +91,7 @@
   addEventListener("keydown", (event) => {
     const box = event.target;
     if (!["Enter", "Escape"].includes(event.key) || !(box instanceof HTMLInputElement)) return;
-    if (box.form !== null || !box.closest(".mantine-TextInput-root, .mantine-NumberInput-root")) return;
+    if (box.form !== null || !box.closest(".mantine-TextInput-root")) return;
     if (box.closest("[role=dialog], dialog")) return;
     setTimeout(() => box.blur());
   });

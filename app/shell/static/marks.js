@@ -2,7 +2,7 @@
 // such blocks. CSS could find them by :has(), but then every change that plotly makes to its drawing lets the browser
 // look at the whole page again: 100 to 200 ms a slider step. Leans on the names of viser's page, as pinned.
 (() => {
-  const KINDS = { slider: "Slider", number: "NumberInput", select: "Select", text: "TextInput" };
+  const KINDS = { slider: "Slider", select: "Select", text: "TextInput" };
   const HIDDEN = ["page state", "page command", "page painted"];
   const CONTAINERS = ["topbar", "tools", "compare"];
   const WIDE = ".sb-pins, .sb-no-pins, .sb-wide, .sb-look, .sb-legend, .mantine-Progress-root";
@@ -22,7 +22,9 @@
       const label = row.firstElementChild?.querySelector(":scope > p > label");
       if (!label) continue;
       const of = ([, name]) => row.querySelector(`:scope > div .mantine-${name}-root`) !== null;
-      const kind = HIDDEN.includes(label.textContent) ? "hidden" : (Object.entries(KINDS).find(of)?.[0] ?? "other");
+      const number = window.schuler.numberBox?.(label.htmlFor) !== undefined; // boxes.js
+      const known = number ? "number" : (Object.entries(KINDS).find(of)?.[0] ?? "other");
+      const kind = HIDDEN.includes(label.textContent) ? "hidden" : known;
       kinds.set(row.parentElement, kind);
       if (kind === "slider") hold(row.parentElement.parentElement, "sliders");
     }
@@ -76,4 +78,5 @@
     const matters = ({ target, addedNodes, removedNodes }) => !drawn(target) && [...addedNodes, ...removedNodes].some(laidOut);
     if (changes.some(matters)) mark();
   }).observe(document.documentElement, { childList: true, subtree: true });
+  addEventListener("numbers", mark); // which boxes hold numbers is known
 })();

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +17,8 @@ from schuler_bench.plots.table import parts
 from schuler_bench.plots.units import duration
 from schuler_bench.session.shown import Shown, Verified, window_of
 from schuler_bench.shell import notices
-from schuler_bench.shell.control import Widget
 from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.number_box import NumberBox
 from schuler_bench.shell.view import PictureView, Tab, if_user
 from schuler_bench.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 
@@ -190,9 +191,7 @@ class MetricsView(PictureView[tuple[str, str]]):
                 hint=Text("Part of the run over which errors are measured."),
             )
             self._ends = {
-                field: Widget(
-                    self.frame.gui.add_number(label, 0.0, min=0.0, max=1e5, visible=False, hint=hint)
-                )
+                field: NumberBox(self.frame.client, label, 0.0, self._end(field), hint=hint, visible=False)
                 for field, (label, hint) in _ENDS.items()
             }
             self._table = self.frame.gui.add_html("")
@@ -200,8 +199,6 @@ class MetricsView(PictureView[tuple[str, str]]):
             self._warnings = self.frame.gui.add_html("")
 
         self._over.on_update(if_user(self._choose))
-        for field, box in self._ends.items():
-            box.handle.on_update(if_user(lambda field=field, box=box: self._end(field, box)))
 
     def _choose(self) -> None:
         """Measure over another part of the run; hours begin as those of the whole run."""
@@ -211,9 +208,12 @@ class MetricsView(PictureView[tuple[str, str]]):
             to_h = self.session.scenario.run.duration_h
         self.frame.show(window=window, window_to_h=to_h)
 
-    def _end(self, field: str, box: Widget) -> None:
-        with self.session.lock:
-            self.frame.show(**{field: float(box.take())})
+    def _end(self, field: str) -> Callable[[float], None]:
+        def take(value: float) -> None:
+            with self.session.lock:
+                self.frame.show(**{field: value})
+
+        return take
 
     def follow_display(self) -> None:
         """Show what the errors are measured over."""
@@ -222,7 +222,7 @@ class MetricsView(PictureView[tuple[str, str]]):
         for field, box in self._ends.items():
             value = getattr(display, field)
             box.show(self.session.scenario.run.duration_h if value is None else value)
-            box.handle.visible = display.window == "hours"
+            box.visible = display.window == "hours"
 
     def follow_jobs(self) -> None:
         """Tell what dominates the run, as far as it is known."""

@@ -16,6 +16,7 @@ from schuler_bench.session.requirements import limits_of
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
+from schuler_bench.shell.number_box import NumberBox
 from schuler_bench.shell.pair_handle import PairHandle
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import Frame, if_user
@@ -78,7 +79,8 @@ class PolesView(PlotlyView):
                 "through the range of its slider; the crosses are at the present value."
             ),
         )
-        self._xi = gui.add_number(
+        self._xi = NumberBox(
+            self.frame.client,
             PAIR_XI,
             0.5,
             step=0.01,
@@ -88,8 +90,8 @@ class PolesView(PlotlyView):
                 "click into the pole map."
             ),
         )
-        self._ratio = gui.add_number(
-            PAIR_OMEGA, 1.2, step=0.1,
+        self._ratio = NumberBox(
+            self.frame.client, PAIR_OMEGA, 1.2, step=0.1,
             hint=Text("Frequency wanted of the pair, in units of the Schuler frequency (above 0)."),
         )  # fmt: skip
         self._decays: Any = gui.add_checkbox(

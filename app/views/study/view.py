@@ -16,6 +16,7 @@ from schuler_bench.session.shown import Shown
 from schuler_bench.session.studying import NOTHING, PRESENT, UPLOADED, chosen_task, planned, run_scenario
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
+from schuler_bench.shell.number_box import NumberBox
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.searching import SearchControls, reveal, show_html
 from schuler_bench.shell.view import Figures, Frame, if_user
@@ -69,10 +70,14 @@ class StudyView(PlotlyView):
         )
         self._over = self._chooser(OVER, "study_x", hint)
         self._and_over = self._chooser(AND_OVER, "study_y", hint)
-        self._seeds: Any = gui.add_number(
-            SEEDS, self.session.display.study_seeds, min=1, max=200, step=1, hint=Text("Runs at each point.")
+        self._seeds = NumberBox(
+            self.frame.client,
+            SEEDS,
+            self.session.display.study_seeds,
+            lambda seeds: self.frame.show(study_seeds=seeds),
+            whole=True,
+            hint=Text("Runs at each point."),
         )
-        self._seeds.on_update(if_user(lambda: self.frame.show(study_seeds=int(self._seeds.value))))
         hint = Text("Runs all methods at each point with each seed, in the background.")
         self._controls = SearchControls(gui, self._studier, self._begin, (RUN, STOP), hint)
         self._on: Any = gui.add_button(
@@ -132,8 +137,7 @@ class StudyView(PlotlyView):
             word = next((word for word, value in options.items() if value == now), next(iter(options), ""))
             if box.value != word:
                 box.value = word
-        if self._seeds.value != display.study_seeds:
-            self._seeds.value = display.study_seeds
+        self._seeds.show(display.study_seeds)
         running = self._controls.follow()
         reveal(
             *((box, own) for box in (self._over, self._and_over, self._seeds)),
