@@ -111,6 +111,10 @@ class Display(BaseModel):
         What of the results is shown; where they do not have it, the first of theirs.
     study_shows : str
         As pictures, or as tables with the worst runs.
+    asked : str
+        Question that the tab "Ask" shows; "": the first.
+    given : tuple of (str, str)
+        Values of fields that a page has set there: ``question.field``, and the value as JSON.
     lesson : str
         Id of the open lesson; "": none.
     places : tuple of (str, int)
@@ -163,6 +167,11 @@ class Display(BaseModel):
     study_metric: Annotated[str, _one_of((*SWEPT, "met"))] = "tilt_rms_arcsec"
     study_method: Annotated[str, Field(max_length=300)] = ""
     study_shows: Literal["pictures", "tables"] = "pictures"
+    asked: Annotated[str, Field(max_length=40)] = ""
+    given: Annotated[
+        tuple[tuple[Annotated[str, Field(max_length=80)], Annotated[str, Field(max_length=1000)]], ...],
+        Field(max_length=60),
+    ] = ()
     lesson: Annotated[str, Field(max_length=255)] = ""
     lesson_step: Annotated[int, Field(ge=0, le=1000)] = 0
     lesson_shown: Annotated[int, Field(ge=0)] = 0

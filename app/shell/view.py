@@ -136,6 +136,8 @@ class View:
         Of a view without a tab that may fill a window: names for ``?view=``, one for each way to see it.
     plots : tuple of str
         Titles of the plots that can be saved from it.
+    asks : tuple of str
+        Questions that it asks: the tab "Ask" offers the others.
     always : bool
         The tab is always there; else while a `PictureView` has something to show.
     """
@@ -147,6 +149,7 @@ class View:
     focus: ClassVar[str] = ""
     alone: ClassVar[tuple[str, ...]] = ()
     plots: ClassVar[tuple[str, ...]] = ()
+    asks: ClassVar[tuple[str, ...]] = ()
     always: ClassVar[bool] = True
 
     def __init__(self, frame: Frame) -> None:

@@ -42,6 +42,7 @@ VIEWS: tuple[str, ...] = (
     "schuler_bench.views.compare",
     "schuler_bench.views.sweep",
     "schuler_bench.views.study",
+    "schuler_bench.views.ask",
     "schuler_bench.views.misprints",
     "schuler_bench.views.scenario_text",
 )

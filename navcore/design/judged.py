@@ -101,10 +101,11 @@ class Designs(Answer):
             )
             return
         yield Text("enough for the median of the seeds, with the settings below:")
+        every = Text("all limits")
         for one in self.needed:
             yield Text(
                 "  {limit}: {figures} {factor} times better ({method})",
-                limit=one.quantity or Text("all limits"),
+                limit=one.quantity or every,
                 figures=", ".join(one.figures),
                 factor=number(one.factor, 3),
                 method=one.method,

@@ -23,6 +23,7 @@ RECIPES = (
     "switching method",
     "motion",
     "sensor error",
+    "question",
     "tab",
     "import format",
 )
@@ -135,7 +136,12 @@ def test_the_guide_has_every_recipe(repo_root: Path) -> None:
 
 @pytest.mark.slow
 def test_the_contract_tests_pass_with_all_examples(program: Path) -> None:
-    for module in ("scenario.guide", "scenario.schema_file", "analysis.network_table"):  # make guide
+    for module in (
+        "scenario.guide",
+        "scenario.schema_file",
+        "analysis.network_table",
+        "questions.page",
+    ):  # make guide
         python(program, "-m", f"navcore.{module}")
     python(program, "-m", "ruff", "check", ".")
     python(program, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "contract", "tests/unit")
@@ -178,6 +184,52 @@ def test_the_format_is_read_and_its_faults_name_the_line(program: Path, tmp_path
     assert report["kind"] == "JSON Lines log" and report["quantities"]["water"]["forward_mps"] == [5.0, 7.0]
     call = f"from navcore.io.recording import load\ntry: load({str(bad)!r})\nexcept ValueError as e: print(e)"
     assert 'line 4: expected "utc_s" and "speed_mps"' in python(program, "-c", call)
+
+
+ASKED = """
+import json
+from schuler_bench.jobs import helper
+from schuler_bench.jobs.searches import Searches
+from schuler_bench.shell.view import View
+from schuler_bench.editing import form
+from schuler_bench.views import load
+from navcore import exceed, load as scenario
+from navcore.questions import QUESTIONS
+
+if __name__ == "__main__":
+    question = QUESTIONS["exceed"]
+    (ship,) = (scenario("zha-fast", ["run.duration_h=1"]),)
+    helper.start()
+    asker = Searches("test").asking["exceed"]
+    asker.begin(question.ask({"scenario": ship, "limit_m": 500.0}))
+    assert asker.wait_idle(240.0), "no answer"
+    of_views = {id for kind in load() for id in kind.asks}
+    spec, = form.fields(question, ("exceed",))
+    print(json.dumps({
+        "words": asker.words,
+        "here": exceed(ship, limit_m=500.0).document(),
+        "helped": asker.result.document(),
+        "html": asker.result.html(),
+        "page": "exceed" not in of_views,
+        "control": [spec.label, spec.slider.low, spec.slider.high],
+    }))
+    helper.stop()
+"""
+
+
+def test_the_question_is_asked_by_command_function_job_and_page(program: Path, tmp_path: Path) -> None:
+    script = tmp_path / "asked.py"
+    script.write_text(ASKED)
+    found = json.loads(python(program, str(script)))
+    command = ["exceed", "zha-fast", "--set", "run.duration_h=1", "--limit-m", "500", "--json"]
+    document = json.loads(python(program, "-m", "schuler_bench", *command))
+    assert found["words"] == []
+    assert document == found["here"] == found["helped"] and set(document["first_h"]) >= {"free"}
+    assert found["page"] and "<table" in found["html"]
+    assert found["control"] == ["position error (m)", 100.0, 10000.0]
+    python(program, "-m", "navcore.questions.page")
+    page = (program / "docs" / "interface.md").read_text("utf-8")
+    assert "### `schuler exceed SCENARIO`" in page and "| `--limit-m LIMIT_M` | `1852.0` |" in page
 
 
 @pytest.mark.nightly

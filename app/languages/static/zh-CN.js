@@ -13,6 +13,7 @@ window.schuler.words = {
   "Learn": "课程",
   "Method": "方法",
   "View": "视图",
+  "Ask": "提问",
   "Compare": "对比",
   "Design": "设计",
   "Diagram": "框图",

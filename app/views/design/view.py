@@ -51,6 +51,7 @@ class DesignView(PlotlyView):
         "Which methods meet the limits, and with what probability; which source the error comes from."
     )
     plots = (title,)
+    asks = ("budget", "design")
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

@@ -42,6 +42,7 @@ class MethodView(View):
 
     title = Text("Method")
     place = "edit"
+    asks = ("adapt",)
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

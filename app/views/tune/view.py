@@ -30,6 +30,7 @@ class TuneView(PlotlyView):
     group = "decide"
     look_for = Text("Let the program search the best setting; accept or discard what it proposes.")
     plots = (title,)
+    asks = ("tune", "profile", "pareto")
     above_px = 2 * CHOOSER_PX + _NOTE_PX
 
     def __init__(self, frame: Frame) -> None:

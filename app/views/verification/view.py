@@ -24,6 +24,8 @@ _WHERE = Text('Tab Errors, curves "Verification": both models and their differen
 class VerificationView(View):
     """Button, progress and verdict."""
 
+    asks = ("verify",)
+
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._shown = frame.session.verifier.result

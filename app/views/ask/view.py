@@ -1,0 +1,176 @@
+"""Tab "Ask": every question without a tab of its own, as a form made from its fields."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
+from navcore.questions import QUESTIONS
+from navcore.questions.base import Question
+from schuler_bench.editing import form
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Control, Section
+from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.searching import SearchControls, reveal, show_html
+from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
+
+QUESTION, ASK, STOP = Text("question"), Text("Ask"), Text("Stop")
+_OLD = Text("Of an earlier scenario: ask again.")
+_SPACE = 40.0
+"""Between the places of two forms in the tab."""
+
+
+class AskView(PictureView[str]):
+    """Chooser of the question, its form, and its answer."""
+
+    title = Text("Ask")
+    place = "lower"
+    group = "decide"
+    look_for = Text("Questions to this scenario; the answer stays until the next one.")
+    always = False
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        of_views = {id for kind in frame.kinds for id in kind.asks}
+        self._offered = {id: one for id, one in QUESTIONS.items() if id not in of_views}
+        self._panels: dict[str, _Panel] = {}
+        self._drawn: object = None
+        for id in self._offered:
+            frame.commands.register(f"ask-{id}", lambda _, id=id: self._panels[id].begin())
+
+    def stands(self, run: Run) -> bool:
+        """Whether a question is left for it."""
+        del run
+        return bool(self._offered)
+
+    @property
+    def _chosen(self) -> str:
+        asked = self.session.display.asked
+        return asked if asked in self._offered else next(iter(self._offered), "")
+
+    def build(self, tab: Tab) -> None:
+        """Make the chooser, and a form for each question."""
+        gui = self.frame.gui
+        if not self._offered:
+            return
+        words = {question.title: id for id, question in self._offered.items()}
+        with tab:
+            gui.add_html(TOOLS, order=0.0)
+            self._chooser: Any = gui.add_dropdown(QUESTION, tuple(words), order=1.0)
+        self._chooser.on_update(if_user(lambda: self.frame.show(asked=words[str(self._chooser.value)])))
+        self._panels = {
+            id: _Panel(self.frame, tab, question, _SPACE * (place + 1))
+            for place, (id, question) in enumerate(self._offered.items())
+        }
+        self.follow_display()
+
+    def follow_display(self) -> None:
+        """Show the display's question with its values."""
+        if not self._panels:
+            return
+        title = self._offered[self._chosen].title
+        if self._chooser.value != title:
+            self._chooser.value = title
+        reveal((self._chooser, len(self._offered) > 1))
+        for id, panel in self._panels.items():
+            panel.show(chosen=id == self._chosen)
+
+    def follow_scenario(self) -> None:
+        """Say where an answer is of an earlier scenario."""
+        self.follow_display()
+
+    def follow_jobs(self) -> None:
+        """Show how far the question is, or what came of it."""
+        self.follow_display()
+
+    def take_new(self) -> bool:
+        """Whether an answer has just come."""
+        found = [self.session.searches.asking[id].result for id in self._offered]
+        new, self._drawn = found != self._drawn, found
+        return new
+
+    def picture(self, found: Shown) -> str:
+        """Make the tables of the answer, HTML."""
+        del found
+        if not self._offered:
+            return ""
+        answer = self.session.searches.asking[self._chosen].result
+        return "" if answer is None else answer.html()
+
+    def show(self, picture: str) -> None:
+        """Show the answer."""
+        for id, panel in self._panels.items():
+            panel.answer(picture if id == self._chosen else "")
+
+
+class _Panel:
+    """Form of one question: its controls, its button, and the place of its answer."""
+
+    def __init__(self, frame: Frame, tab: Tab, question: type[Question], order: float) -> None:
+        gui = frame.gui
+        self._frame, self._session, self._question = frame, frame.session, question
+        self._id: str = question.model_fields["id"].default
+        self._asker = frame.session.searches.asking[self._id]
+        self._specs = form.fields(question, (self._id,))
+        self._section = Section(gui, tab, self._edit, order)
+        with tab:
+            self._controls = SearchControls(
+                gui, self._asker, self.begin, (ASK, STOP), question.help, order=order + _SPACE - 8.0
+            )
+            self._words: Any = gui.add_html("", visible=False, order=order + _SPACE - 4.0)
+            self._answer: Any = gui.add_html("", visible=False, order=order + _SPACE - 3.0)
+
+    def show(self, *, chosen: bool) -> None:
+        """Show the form, and how far the question is; nothing where another one is chosen."""
+        given = self._given()
+        values = {spec.path: given.get(str(spec.path[-1]), spec.default) for spec in self._specs}
+        self._section.show(self._specs if chosen else [], values, None)
+        self._controls.follow(chosen)
+        asked = self._asker.asked
+        old = asked is not None and asked.load != self._session.scenario
+        words = [*self._asker.words, *([_OLD] if old else [])]
+        show_html(self._words, notices.note(words, "warning") if chosen else "")
+
+    def answer(self, html: str) -> None:
+        """Show the answer."""
+        text = Text('<div class="sb-wide sb-table">{html}</div>', html=html) if html else ""
+        show_html(self._answer, text)
+
+    def begin(self) -> None:
+        """Ask the question."""
+        with notices.told(self._frame.client, self._question.title, self._frame.refresh):
+            with self._session.lock:
+                asked = self._question.ask({"scenario": self._session.scenario, **self._given()})
+            self._asker.begin(asked)
+
+    def _given(self) -> dict[str, Any]:
+        """Values of fields that a page has set."""
+        before = f"{self._id}."
+        return {
+            key.removeprefix(before): json.loads(text)
+            for key, text in self._session.display.given
+            if key.startswith(before)
+        }
+
+    def _edit(self, control: Control, by_slider: bool) -> None:
+        name, entered = str(control.spec.path[-1]), control.take(by_slider)
+        try:
+            value = control.read(entered)
+            value = int(value) if control.spec.kind == "integer" else value
+            self._question.ask({"scenario": self._session.scenario, **self._given(), name: value})
+        except (InputError, ValueError) as error:
+            lines = [str(fault) for fault in error.faults] if isinstance(error, InputError) else [str(error)]
+            control.refuse(lines)
+            return
+        control.say("")
+        control.follow(value)
+        key = f"{self._id}.{name}"
+        others = tuple(pair for pair in self._session.display.given if pair[0] != key)
+        self._frame.show(given=(*others, (key, json.dumps(value))))
+
+
+VIEW = AskView
