@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
@@ -35,6 +35,7 @@ _COMMANDS = {
     "study": StudyCommand,
     "bench": BenchCommand,
 }
+_PLACES = ("--out", "--write-map")
 _NO_INT = "invalid literal for int() with base 10: "
 
 
@@ -63,6 +64,8 @@ def parse(arguments: Sequence[str]) -> Command | None:
     from tyro import _errors
     from tyro.conf import FlagCreatePairsOff, subcommand
 
+    if empty := next(_empty(arguments), ""):
+        raise InputError(Fault(empty, "", "", "must name a file or a folder"))
     commands: Any = Union[tuple(Annotated[command, subcommand(name)] for name, command in _COMMANDS.items())]  # noqa: UP007
     try:
         with _errors.on_parse_error(lambda event: _refuse(event, next(iter(arguments), ""))):
@@ -78,6 +81,15 @@ def parse(arguments: Sequence[str]) -> Command | None:
         return None
     except SystemExit:  # tyro has shown the help
         return None
+
+
+def _empty(arguments: Sequence[str]) -> Iterator[str]:
+    """Options for a path that are given an empty one, which would be the folder where the user stands."""
+    for option, value in zip(arguments, [*arguments[1:], "."], strict=True):
+        if option in _PLACES and not value:
+            yield option
+        if option.endswith("=") and option[:-1] in _PLACES:
+            yield option[:-1]
 
 
 def _refuse(event: ParseErrorEvent, command: str) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.inputs import opened
+from navcore.foundation.visible import visible
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, known_columns
 from navcore.io.columns import MOST_CELLS, MOST_COLUMNS
 from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
@@ -199,9 +200,12 @@ def time_forms(cells: list[str]) -> list[str]:
 
 def as_toml(data: dict[str, Any], table: Preview, name: str) -> str:
     """Text of a map, with the columns of the file and their first cells as comments."""
-    words = [f"# Map of {name}: what its columns mean. Names, units and signs may be changed.", "# Columns:"]
+    words = [
+        f"# Map of {visible(name)}: what its columns mean. Names, units and signs may be changed.",
+        "# Columns:",
+    ]
     words += [
-        f"#   {_quoted(column)}: {', '.join(row[i] for row in table.rows if i < len(row))[:80]}"
+        f"#   {_quoted(column)}: {visible(', '.join(row[i] for row in table.rows if i < len(row)))[:80]}"
         for i, column in enumerate(table.header)
     ]
     time = data["time"]

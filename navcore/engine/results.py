@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Literal
 from navcore.engine.measures import metrics
 from navcore.engine.run import Run
 from navcore.foundation.cells import safe_cell
-from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.inputs import opened
-from navcore.foundation.out import placing, require_folder, writing
-from navcore.foundation.text import Text
+from navcore.foundation.out import placing, require_folder, utf8, writing
 from navcore.quantities import COMPONENTS
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario
@@ -138,13 +136,7 @@ def _names(format: Format) -> tuple[str, str, str]:
 
 
 def _scenario_text(scenario: Scenario) -> bytes:
-    try:
-        return to_toml(scenario).encode()
-    except UnicodeEncodeError as error:
-        before, after = error.object[: error.start], error.object[error.start :]
-        line = before.rpartition("\n")[2] + after.partition("\n")[0]
-        allowed = Text("is no UTF-8 text, which scenario.toml needs: rename the file or folder")
-        raise InputError(Fault("--out", "", line, allowed)) from None
+    return utf8(to_toml(scenario))
 
 
 def _remove_series(path: Path, reads: Iterable[str | os.PathLike[str]]) -> None:

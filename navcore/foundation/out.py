@@ -243,8 +243,25 @@ def write_file(
         See `require_file`; what was there before stays.
     """
     require_file(target, command, reads, force=force, option=option)
+    utf8(text, option)
     with writing(target, option), whole(Path(target)) as stream:
         stream.write(signed(text, command, comment).encode())
+
+
+def utf8(text: str, option: str = _OPTION) -> bytes:
+    """Return a text as it is written.
+
+    Raises
+    ------
+    InputError
+        It quotes a path that is no UTF-8, as old disks have them; its line is named.
+    """
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        line = text[: error.start].rpartition("\n")[2] + text[error.start :].partition("\n")[0]
+        allowed = Text("is no UTF-8 text and cannot be written: rename the file or folder")
+        raise InputError(Fault(option, "", line, allowed)) from None
 
 
 def signed(text: str, command: str, comment: str = "# {}") -> str:

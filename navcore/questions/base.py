@@ -19,7 +19,7 @@ from pydantic.fields import FieldInfo
 from navcore.foundation.answers import Answer
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.faults import faults_from
-from navcore.foundation.out import PathLike, placing, require_file, require_folder, write_file
+from navcore.foundation.out import PathLike, placing, require_file, require_folder, utf8, write_file
 from navcore.foundation.parameters import Parameters, extra_of
 from navcore.foundation.text import Text
 
@@ -250,7 +250,7 @@ class Question(Parameters):
         if self.writes == "folder":
             with placing(out, self.files, kept) as hidden:
                 for name, text in texts.items():
-                    (hidden / name).write_text(text, encoding="utf-8")
+                    (hidden / name).write_bytes(utf8(text))
         else:
             (text,) = texts.values()
             write_file(out, text, self._command, kept, force=force)

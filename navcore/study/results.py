@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from navcore.foundation.inputs import read_bytes
-from navcore.foundation.out import HIDDEN, PathLike, refused, require_folder, whole, writing
+from navcore.foundation.out import HIDDEN, PathLike, refused, require_folder, utf8, whole, writing
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
 from navcore.scenario.file import names_files, scenario_hash
@@ -122,7 +122,7 @@ class Folder:
             self._remove_parts()
             self._parts.mkdir(exist_ok=True)
             with self._placing(STUDY_FILE) as file:
-                file.write(text.encode())
+                file.write(utf8(text))
         self._parts.mkdir(exist_ok=True)
         self._remove_half_written()
 

@@ -13,6 +13,7 @@ from navcore.foundation import out
 from navcore.foundation.errors import InputError
 from navcore.foundation.inputs import noting
 from navcore.foundation.out import placing, require_file, require_folder, signed, write_file, written_by
+from navcore.io.column_map import read_map
 from navcore.scenario.file import load
 from navcore.scenario.reads import recordings
 from navcore.study.file import load as load_study
@@ -246,6 +247,35 @@ def test_a_folder_of_parts_is_never_a_link(here: Path, capsys: pytest.CaptureFix
     (here / "results" / "parts").symlink_to(here / "mine")
     assert "parts': is not a folder" in refusal([*RUN_STUDY, "--out", "results"], capsys)
     assert len([*(here / "mine").iterdir()]) == 1
+
+
+def test_an_empty_place_is_not_the_folder_where_the_user_stands(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """``--out "$DIR"`` with no DIR wrote the files among the user's own."""
+    for arguments, option in ((RUN, "--out"), (RUN_STUDY, "--out"), (TUNE, "--out"), (CHECK, "--write-map")):
+        for place in ([option, ""], [f"{option}="]):
+            assert "must name a file or a folder" in refusal([*arguments, *place], capsys)
+    assert {path.name for path in here.iterdir()} == {"ship.toml", "study.toml", "log.csv", "notes.md"}
+
+
+def test_paths_that_are_no_text_are_told(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder of an old disk, whose name no TOML file can hold: a recording in it ended in a traceback."""
+    old = here / "alt\udcfc"
+    old.mkdir()
+    (old / "log.csv").write_text("t_s,speed_mps\n0,5\n400,5\n")
+    text = '[reference]\nkind = "file"\nfile = "log.csv"\n[imu]\ngyro_bias_dph = [0.01, 0.0, 0.0]\n'
+    (old / "ship.toml").write_text(SHIP.replace('[reference]\nkind = "log"\nnoise_mps = 0.1\n', text))
+    ship = str(old / "ship.toml")
+    assert "is no UTF-8 text" in refusal(["run", ship, "--out", "trial"], capsys)
+    assert "is no UTF-8 text" in refusal(["tune", ship, *TUNE[2:], "--along", "--out", "best.toml"], capsys)
+    assert not (here / "trial").exists() and not (here / "best.toml").exists()
+
+
+def test_a_map_of_a_file_with_an_odd_name_is_toml(here: Path) -> None:
+    (here / "a\nb.csv").write_text(LOG.replace("5.3", '"5.3\x1b"'))
+    main(["check", "a\nb.csv", "--write-map", "map.toml"])
+    assert read_map("map.toml").quantity
 
 
 # ---------------------------------------------------------------- the mechanism of folders
