@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.scheduler import Lane
 from schuler_bench.jobs.search import Search
+from schuler_bench.jobs.worker import Watch
 
 if TYPE_CHECKING:
     from navcore.study.model import Study
@@ -35,6 +39,8 @@ class StudyTask:
         The session's scenario, of which it was made; None: it has a scenario of its own.
     runs : bytes
         ``runs.parquet`` of its complete runs, when it was stopped before.
+    folder : Path or None
+        Empty; for its results, part by part, so that they outlive this process. None: a temporary one.
     """
 
     study: Study
@@ -42,6 +48,7 @@ class StudyTask:
     scenario: Scenario
     present: Scenario | None = None
     runs: bytes = b""
+    folder: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +79,15 @@ class Studier(Search[StudyTask, StudyResult]):
         super().__init__(
             tell, _carried_out, stopped=Text("Stopped: no run was complete."), name=name, keeps=True
         )
+        self.place: Callable[[], Path | None] = lambda: None
+        """Gives an empty folder in which the parts of a study are kept."""
+
+    def _carry_out(
+        self, asked: StudyTask, progress: Callable[[float], None], watch: Watch
+    ) -> StudyResult | None:
+        if watch.lane is not Lane.CLUSTER:  # its workers have other disks
+            asked = replace(asked, folder=self.place())
+        return super()._carry_out(asked, progress, watch)
 
     @property
     def left(self) -> StudyTask | None:
@@ -100,7 +116,6 @@ def require_small(plan: Plan) -> None:
 def _carried_out(
     task: StudyTask, progress: Callable[[float], None], cancelled: Callable[[], bool]
 ) -> StudyResult | None:
-    from pathlib import Path
     from tempfile import TemporaryDirectory
 
     from navcore.study.plan import Plan
@@ -108,12 +123,13 @@ def _carried_out(
     from navcore.study.study import carry_out
 
     plan = Plan(task.study, task.where)
-    with TemporaryDirectory(prefix="schuler-study-") as path:
-        folder = Folder(Path(path), plan)
+    with ExitStack() as until:
+        path = task.folder or Path(until.enter_context(TemporaryDirectory(prefix="schuler-study-")))
+        folder = Folder(path, plan)
         with folder.opened(False):
             if task.runs:
                 folder.take(task.runs)
             document = carry_out(plan, folder, 1, progress, cancelled)
         if not document["runs"]:
             return None
-        return StudyResult(document, (Path(path) / RUNS_FILE).read_bytes())
+        return StudyResult(document, (path / RUNS_FILE).read_bytes())

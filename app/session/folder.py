@@ -19,11 +19,13 @@ _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
 TEMPORARY = re.compile(r"\.[0-9a-f]{16}\.tmp")
 CONTENT = re.compile(r"[0-9a-f]{64}")
 FILES = re.compile(r"[A-Za-z0-9_-]{1,64}\.files")
+STUDY = re.compile(r"[A-Za-z0-9_-]{1,64}\.study")
 PUT_ASIDE = re.compile(r"sessions\.(broken|newer)-\d+")
 _FILES_OF_STATE = re.compile(
     rf"lock|session\.key|(sessions\.sqlite|{PUT_ASIDE.pattern})(-wal|-shm|-journal)?|{TEMPORARY.pattern}"
 )
-_FOLDERS_OF_STATE = re.compile(r"content|" + FILES.pattern)
+_FOLDERS_OF_STATE = re.compile("|".join(("content", FILES.pattern, STUDY.pattern)))
+_OF_A_SESSION = re.compile(f"{FILES.pattern}|{STUDY.pattern}")
 _ELSEWHERE = "or set XDG_STATE_HOME to another folder"
 _log = logging.getLogger("schuler.store")
 
@@ -201,6 +203,43 @@ def remove_files(path: Path) -> None:
         _log.warning("%s cannot be removed: %s", name, error.strerror)
 
 
+def remove_study(path: Path) -> None:
+    """Remove a kept study; what is not ours stays, and the folder with it."""
+    try:
+        with opened(path) as folder:
+            empty_study(folder, path)
+        os.rmdir(path)
+        _log.info("removed study of session %s", log_name(path.stem))
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        _log.warning("study of session %s cannot be removed: %s", log_name(path.stem), error.strerror)
+
+
+def empty_study(folder: Folder, path: Path) -> None:
+    """Remove the files of a kept study from its open folder."""
+    from navcore.study.results import PARTS
+
+    for name in folder.files():
+        folder.discard(name)
+    with suppress(FileNotFoundError):
+        with opened(path / PARTS) as parts:
+            for name in parts.files():
+                parts.discard(name)
+        os.rmdir(PARTS, dir_fd=folder.handle)
+
+
+def bytes_of(path: Path) -> int:
+    """Room that a kept study takes."""
+    from navcore.study.results import PARTS
+
+    total = 0
+    for place in (path, path / PARTS):
+        with suppress(OSError), opened(place) as folder:
+            total += sum(state.st_size for state in folder.files().values())
+    return total
+
+
 def refuse_others(path: Path) -> None:
     """Refuse a state folder in which something else is in the place of something of ours.
 
@@ -234,7 +273,7 @@ def _faults(path: Path, fits: Callable[[int], bool], *, any_owner: bool = False)
     except OSError:
         return []
     # The name of a session's folder opens the session: its beginning is enough to find it.
-    shown = path.with_name(f"{path.stem[:6]}*.files") if FILES.fullmatch(path.name) else path
+    shown = path.with_name(f"{path.stem[:6]}*{path.suffix}") if _OF_A_SESSION.fullmatch(path.name) else path
     wanted = "file" if fits is stat.S_ISREG else "folder"
     if stat.S_ISLNK(state.st_mode):
         how = f"is a link, which is not followed: put the {wanted} itself there, {_ELSEWHERE}"

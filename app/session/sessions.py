@@ -25,8 +25,10 @@ from schuler_bench.session.document import (
 )
 from schuler_bench.session.folder import link_files, remove_files
 from schuler_bench.session.keeping import Keeping, NotKept, SetAside
+from schuler_bench.session.kept_study import keep_study
 from schuler_bench.session.session import Session
 from schuler_bench.session.store import Store, UnreadableError
+from schuler_bench.session.studying import study_name
 
 MOST_SESSIONS = 64
 """Sessions held without an open page; with one they are always held."""
@@ -150,6 +152,7 @@ class Sessions:
         if self._store is not None:
             session.uploads.has_room = self._store.has_room
             session.uploads.keep_once = self._store.contents.keep_once
+            keep_study(session.searches.studier, self._store.study_folder(id), study_name(session))
         session.on_answer = self._on_answer
         session.share = partial(self._share, session)
         session.shared_pins = partial(self._shared_pins, session)

@@ -20,12 +20,15 @@ from schuler_bench.session.database import Database, parsed
 from schuler_bench.session.folder import (
     FILES,
     PUT_ASIDE,
+    STUDY,
     TEMPORARY,
     Folder,
+    bytes_of,
     link_files,
     opened,
     refuse_others,
     remove_files,
+    remove_study,
     temporary_name,
 )
 from schuler_bench.session.keeping import HELD, Keeping, not_kept
@@ -41,6 +44,8 @@ LARGEST_UPLOADS = 2 << 30
 """Bytes of the uploaded files of all sessions, each content counted once."""
 CLAIMED = "SCHULER_STATE_CLAIMED"
 """Set in the environment of a worker whose door has claimed the folder."""
+LARGEST_STUDIES = 1 << 30
+"""Bytes of the studies of all sessions."""
 _ORPHAN_S = 86_400.0
 """So long a server must have served since a file or folder has no session."""
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
@@ -214,6 +219,10 @@ class Store:
         """Where the uploaded files of a session are kept; need not exist."""
         return self.folder / f"{_checked(id)}.files"
 
+    def study_folder(self, id: str) -> Path:
+        """Where the last study of a session is kept; need not exist."""
+        return self.folder / f"{_checked(id)}.study"
+
     def has_room(self, size: int) -> bool:
         """Whether a file of this size can still be kept."""
         return self.contents.bytes() + size <= LARGEST_UPLOADS
@@ -279,13 +288,15 @@ class Store:
         for id in self.database.remove_old(OLDEST_S, 10.0 * OLDEST_S, MOST_KEPT):
             _log.info("removed session %s: not used for long, or one too many", log_name(id))
             remove_files(self.files_folder(id))
+            remove_study(self.study_folder(id))
         contents = self.contents.unused()
         with opened(self.folder) as ours:
             names = ours.names()
             left = {name for name in names if TEMPORARY.fullmatch(name) and ours.file(name)}
             # Of a session that was lost with a damaged file, the recordings are all there is.
             lost = any(PUT_ASIDE.fullmatch(name) for name in names)
-            folders = set() if lost else set(filter(FILES.fullmatch, names))
+            studies = set(filter(STUDY.fullmatch, names))
+            folders = set() if lost else studies | set(filter(FILES.fullmatch, names))
             orphans = {name for name in folders if not self._knows(Path(name).stem)}
             unused_s = self.database.unused_s({*contents, *left, *orphans})
             for name in left:
@@ -293,11 +304,27 @@ class Store:
                     ours.remove(name, f"{name}, which was never put in its place")
             for name in orphans:
                 if unused_s[name] > _ORPHAN_S:
-                    remove_files(self.folder / name)
+                    (remove_study if name in studies else remove_files)(self.folder / name)
+        self._bound_studies(studies)
         self.contents.remove(name for name in contents if unused_s[name] > content.UNLINKED_S)
+
+    def _bound_studies(self, names: set[str]) -> None:
+        """Remove the studies that were written to longest ago, of those that take too much room."""
+        room = LARGEST_STUDIES
+        by_age = sorted((self.folder / name for name in names), key=_written_s, reverse=True)
+        for path in by_age:
+            room -= bytes_of(path)
+            if room < 0:
+                remove_study(path)
 
     def _knows(self, id: str) -> bool:
         return self.saving.waiting(id) is not None or self.database.knows(id)
+
+
+def _written_s(path: Path) -> float:
+    with contextlib.suppress(OSError):
+        return path.lstat().st_mtime
+    return 0.0
 
 
 class UnreadableError(ValueError):

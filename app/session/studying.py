@@ -137,6 +137,13 @@ def _chosen(session: Session) -> tuple[Plan, Scenario | None]:
     return plan, present
 
 
+def study_name(session: Session) -> str:
+    """Name in faults of the study that the session's display chooses; empty: of its own scenario."""
+    with session.lock:
+        chosen = session.display.study
+        return session.study_file[0] if chosen == UPLOADED else chosen
+
+
 def planned(session: Session) -> str:
     """How many runs the chosen study has, and about how long they take; or why it cannot be run."""
     try:
