@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from difflib import get_close_matches
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 
 from navcore.foundation.errors import Fault, InputError
@@ -85,7 +86,7 @@ def parse(arguments: Sequence[str]) -> Command | None:
 
 def _empty(arguments: Sequence[str]) -> Iterator[str]:
     """Options for a path that are given an empty one, which would be the folder where the user stands."""
-    for option, value in zip(arguments, [*arguments[1:], "."], strict=True):
+    for option, value in zip_longest(arguments, arguments[1:], fillvalue="."):
         if option in _PLACES and not value:
             yield option
         if option.endswith("=") and option[:-1] in _PLACES:
