@@ -179,3 +179,40 @@ def test_a_fault_of_the_program_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -
     with pytest.raises(ValueError, match="invalid literal"):
         main(["run", "zha-fast"])
     assert refused_by_the_system(RuntimeError("deque mutated")) == ""
+
+
+# ---------------------------------------------------------------- the address of a cluster
+
+NO_ADDRESSES = [
+    "garbage",
+    "tcp://x:0",
+    "tcp://x:70000",
+    "tcp://[::1]:99999",
+    "tcp://[:::1]:80",
+    "tcp://..:80",
+]
+
+
+@pytest.mark.parametrize("address", [*NO_ADDRESSES, f"tcp://{'a' * 100}:80", "tcp://a b:80", "tcp://x:80\n"])
+def test_what_can_be_no_address_is_refused_at_once(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Some were a traceback, others ten seconds of waiting."""
+    for words in (["study", "latitudes", "--scheduler"], ["serve", "--cluster"]):
+        assert main([*words, address]) == 2
+        told = capsys.readouterr().err
+        assert "must be tcp://HOST:PORT" in told and told.count("\n") == 1
+
+
+def test_a_study_says_once_that_its_cluster_cannot_be_reached(
+    capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It said that heavy jobs are done here, and ended."""
+    distributed = pytest.importorskip("distributed")
+
+    def unreachable(*_: object, **__: object) -> None:
+        raise OSError("Timed out")
+
+    monkeypatch.setattr(distributed, "Client", unreachable)
+    assert main(["study", "latitudes", "--scheduler", "tcp://127.0.0.1:1", "--quiet"]) == 2
+    told = capsys.readouterr().err
+    assert "cannot be reached (OSError: Timed out)" in told and told.count("\n") == 1
+    assert not caplog.records
