@@ -101,6 +101,43 @@ class SetAside:
     content: Callable[[], bytes | None]
 
 
+class OwnKeeping:
+    """Whether one session is kept, and what could not be read of what was.
+
+    Parameters
+    ----------
+    tell : callable
+        ``tell()`` lets the pages of the session say so anew.
+
+    Attributes
+    ----------
+    server : Keeping
+        Of all sessions.
+    alone : NotKept or None
+        Why this session alone is not kept.
+    unreadable : str
+        What could not be read of what was kept, in words; empty: nothing.
+    aside : tuple of SetAside
+        What was put aside because it could not be read, to be downloaded.
+    """
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self.tell, self.server = tell, Keeping()
+        self.alone: NotKept | None = None
+        self.unreadable, self.aside = "", tuple[SetAside, ...]()
+
+    @property
+    def fault(self) -> NotKept | None:
+        """Why the work is not kept at present; None: it is."""
+        return self.alone or self.server.fault
+
+    def becomes(self, alone: NotKept | None) -> None:
+        """Take note why this session alone is not kept, or (None) that it is."""
+        if alone != self.alone:
+            self.alone = alone
+            self.tell()
+
+
 class Keeping:
     """Whether a server keeps anything at present.
 

@@ -21,13 +21,12 @@ from schuler_bench.jobs.words import for_a_page
 from schuler_bench.jobs.worker import Watch, Worker
 from schuler_bench.session.display import Display
 from schuler_bench.session.history import History, State, first_editable
-from schuler_bench.session.keeping import Keeping, NotKept, SetAside
+from schuler_bench.session.keeping import OwnKeeping
 from schuler_bench.session.pins import Kept, Pins
 from schuler_bench.session.uploads import Uploads
 from schuler_bench.session.view import View
 
 _REPORT_EVERY_S = 0.1
-_ALL_IS_WELL: NotKept | None = None
 _log = logging.getLogger("schuler.session")
 
 
@@ -60,14 +59,8 @@ class Session:
         ``shared_pins(address)`` gives those of a shared state, as of `Pins.to_json`; None: no such state.
     restored : bool
         It was kept, or is a copy of one that was: not a new visitor's.
-    keeping : Keeping
-        Whether the server keeps anything at present.
-    unkept : NotKept or None
-        Why this session alone is not kept.
-    unreadable : str
-        What could not be read of what was kept, in words; empty: nothing.
-    set_aside : tuple of SetAside
-        What was put aside because it could not be read, to be downloaded.
+    keeping : OwnKeeping
+        Whether the session is kept.
     presenter : View or None
         The page that drives; the others watch.
     run : Run or None
@@ -107,8 +100,7 @@ class Session:
         self.shared_pins: Callable[[str], Kept | None] = lambda _: None
         self.presenter: View | None = None
         self.restored = False
-        self.keeping, self.unkept = Keeping(), _ALL_IS_WELL
-        self.unreadable, self.set_aside = "", tuple[SetAside, ...]()
+        self.keeping = OwnKeeping(lambda: self._tell(lambda view: view.keeping_changed()))
         self.run: Run | None = None
         self.prepared: Run | None = None
         self.run_number = 0
@@ -338,21 +330,6 @@ class Session:
         scheduler().come_back(self._name)  # there is nothing left to count
         if not keep_files:
             self.uploads.clear()
-
-    @property
-    def not_kept_now(self) -> NotKept | None:
-        """Why the work is not kept at present; None: it is."""
-        return self.unkept or self.keeping.fault
-
-    def not_kept(self, fault: NotKept | None) -> None:
-        """Take note why this session alone is not kept, or (None) that it is."""
-        if fault != self.unkept:
-            self.unkept = fault
-            self.tell_kept()
-
-    def tell_kept(self) -> None:
-        """Let the pages say whether the work is kept."""
-        self._tell(lambda view: view.keeping_changed())
 
     def wait_idle(self, timeout_s: float | None = None) -> bool:
         """Block until no run is under way; False after the timeout."""

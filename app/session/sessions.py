@@ -88,7 +88,7 @@ class Sessions:
         with making:
             with self._lock:
                 session = self._by_id.get(id)
-            if session is not None and session.unkept is NOT_READ and not session.open_pages:
+            if session is not None and session.keeping.alone is NOT_READ and not session.open_pages:
                 session = None  # perhaps it can be read now
             opened = self._make(id) if session is None else session
             with self._lock:
@@ -139,7 +139,7 @@ class Sessions:
     def _make(self, id: str) -> Session:
         scenario, origin = self._first()
         session = Session(id, scenario, origin, self._files_folder(id))
-        session.prepared, session.keeping = self.prepared, self._keeping
+        session.prepared, session.keeping.server = self.prepared, self._keeping
         session.on_change = partial(self._changed, session)
         shared = copied_from(id)
         try:
@@ -147,7 +147,7 @@ class Sessions:
                 self._fill(session, shared)
         except OSError as error:
             _log.warning("session %s cannot be read at present: %s", log_name(id), error.strerror or error)
-            session.not_kept(NOT_READ)
+            session.keeping.becomes(NOT_READ)
             session.on_change = lambda: None  # it would be written over
         if self._store is not None:
             session.uploads.has_room = self._store.has_room
@@ -197,7 +197,7 @@ class Sessions:
         if self._store is None:
             return
         self._store.database.put_aside(source, str(why))
-        session.unreadable = Text(
+        session.keeping.unreadable = Text(
             "This session could not be opened as it was kept: {why}. {told}", why=why, told=told
         )
 
@@ -205,7 +205,7 @@ class Sessions:
         """Offer what was put aside of a session to its page."""
         if self._store is not None:
             database = self._store.database
-            session.set_aside += tuple(
+            session.keeping.aside += tuple(
                 SetAside(f"session-{one.number}.json", one.why, partial(database.aside, source, one.number))
                 for one in database.asides(source)
             )
@@ -214,13 +214,13 @@ class Sessions:
 
     def _changed(self, session: Session) -> None:
         if self._store is not None:
-            self._store.saving.soon(session.id, partial(to_document, session), session.not_kept)
+            self._store.saving.soon(session.id, partial(to_document, session), session.keeping.becomes)
 
     def _tell_kept(self, _: NotKept | None) -> None:
         with self._lock:
             sessions = list(self._by_id.values())
         for session in sessions:
-            session.tell_kept()
+            session.keeping.tell()
 
     def _share(self, session: Session) -> str:
         id = new_shared_id()

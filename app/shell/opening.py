@@ -170,7 +170,7 @@ class Opening:
         """Let the browser save what was kept and cannot be read, as it is."""
         client = self._client
         with notices.told(client, Text("It cannot be downloaded at present"), lambda: None):
-            one = self._session.set_aside[number]
+            one = self._session.keeping.aside[number]
             content = one.content()
             if content is None:
                 notices.tell(client, Text("{name} is no longer there", name=one.name), [], "warning")

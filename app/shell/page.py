@@ -216,8 +216,8 @@ class Page:
         self._update(self._show_keeping)
 
     def _show_keeping(self) -> None:
-        fault = self.session.not_kept_now
-        self.header.show_keeping(fault, self.session.unreadable)
+        fault = self.session.keeping.fault
+        self.header.show_keeping(fault, self.session.keeping.unreadable)
         if (fault is not None) != self._said_unkept:
             self._said_unkept = fault is not None
             if fault is not None:

@@ -137,7 +137,7 @@ def test_a_session_that_cannot_be_read_is_offered_for_download_and_never_written
         kept = dashboard.store
         assert kept is not None and kept.saving.flush(20.0)
         (session,) = dashboard.sessions._by_id.values()
-        (aside,) = session.set_aside
+        (aside,) = session.keeping.aside
         assert aside.content() == strange
         written = kept.read(id)
         assert written is not None and written["schema"] == 1

@@ -184,16 +184,19 @@ def test_a_strange_document_is_a_fresh_session_and_stays_as_it_was(
     session = after(spoilt)
     assert "begins anew" in caplog.text
     assert (session.scenario, session.origin) == (PRESET, "zha-fast")
-    assert "could not be opened as it was kept" in session.unreadable and "begins anew" in session.unreadable
+    assert (
+        "could not be opened as it was kept" in session.keeping.unreadable
+        and "begins anew" in session.keeping.unreadable
+    )
     assert session.change(edits.with_value(session.scenario, XI, 0.4), None)
     again = started().get(ID)
-    assert xi_of(again) == 0.4 and not again.unreadable
+    assert xi_of(again) == 0.4 and not again.keeping.unreadable
     for one in (session, again):
-        (aside,) = one.set_aside
+        (aside,) = one.keeping.aside
         assert aside.name == "session-1.json"
     assert aside.content() == strange[0].encode()
     started().get(ID)
-    assert len(started().get(ID).set_aside) == 1
+    assert len(started().get(ID).keeping.aside) == 1
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"\xff", b"[" * 100_000, b"null", b'{"id": "of another"}'])
@@ -204,10 +207,10 @@ def test_what_is_no_document_stays_as_it_was(
     running = started()
     running._store.database.write(ID, content)
     session = running.get(ID)
-    assert session.scenario == PRESET and "it is damaged" in session.unreadable
+    assert session.scenario == PRESET and "it is damaged" in session.keeping.unreadable
     set_xi(session, 0.4)
     again = started().get(ID)
-    assert xi_of(again) == 0.4 and [one.content() for one in again.set_aside] == [content]
+    assert xi_of(again) == 0.4 and [one.content() for one in again.keeping.aside] == [content]
 
 
 def test_what_cannot_be_read_at_present_is_not_written_over(
@@ -222,8 +225,8 @@ def test_what_cannot_be_read_at_present_is_not_written_over(
     with monkeypatch.context() as patched:
         patched.setattr(sessions._store, "read", fail)
         session = sessions.get(ID)
-        assert session.not_kept_now is not None
-        assert "cannot be read at present" in session.not_kept_now.reason
+        assert session.keeping.fault is not None
+        assert "cannot be read at present" in session.keeping.fault.reason
         set_xi(session, 0.9)
     assert xi_of(sessions.get(ID)) == 0.5
     assert xi_of(started().get(ID)) == 0.5
@@ -260,9 +263,9 @@ def test_a_link_that_cannot_be_read_stays_and_says_so(started: Callable[[], Sess
     database.write(shared, strange := json.dumps(document).encode())
     for _ in range(2):
         copy = started().get(SessionIds().new_copy(shared))
-        assert copy.scenario == PRESET and "another version of this program" in copy.unreadable
+        assert copy.scenario == PRESET and "another version of this program" in copy.keeping.unreadable
         set_xi(copy, 0.4)
-        assert [one.content() for one in copy.set_aside] == [strange]
+        assert [one.content() for one in copy.keeping.aside] == [strange]
     assert started()._store.database.read(shared) == strange
 
 
@@ -284,7 +287,7 @@ def test_what_cannot_be_read_beside_the_scenario_is_left_out(
     after: Callable[..., Session], spoil: Any, lost: str
 ) -> None:
     session = after(spoil)
-    assert lost in session.unreadable and len(session.set_aside) == 1
+    assert lost in session.keeping.unreadable and len(session.keeping.aside) == 1
     assert xi_of(session) == 0.5
     assert session.display.scale == ("linear" if lost == "display" else "log")
     assert session.history.undo_name == (None if lost == "history" else "xi 0.5")

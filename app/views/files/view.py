@@ -53,7 +53,7 @@ class FilesView(View):
                 gui.add_button(Text("Download {name}", name=name), color="gray", order=11)
                 for name in (SCENARIO, METRICS)
             ]
-            aside = self.session.set_aside
+            aside = self.session.keeping.aside
             if aside:
                 gui.add_html(notices.heading(Text("Kept, but not readable")), order=20)
                 gui.add_html(notices.small(_ASIDE), order=21)
