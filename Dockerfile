@@ -25,15 +25,10 @@ COPY pyproject.toml README.md LICENSE ./
 COPY app/ app/
 COPY assets/ assets/
 COPY navcore/ navcore/
+# Machine code for a family of processors, into the wheel. On a processor outside it the first start compiles, into /data.
+RUN /opt/schuler/bin/python -m navcore.warm portable
 RUN python -m pip wheel --no-deps --no-index --no-build-isolation --wheel-dir /wheels . \
  && python -m pip --python /opt/schuler/bin/python install --no-deps --no-index /wheels/*.whl
-
-# Machine code is kept for the processor that compiled it. On another one the first start compiles anew, into /data.
-# Root compiles, and the user schuler reads: the first start copies the kernels to /data.
-# Away from the sources: the cache is tied to the path of the installed modules.
-WORKDIR /opt/schuler
-ENV SCHULER_CACHE_DIR=/opt/schuler-kernels
-RUN mkdir -p /opt/schuler-kernels && /opt/schuler/bin/python -m navcore.warm
 
 
 FROM python:3.11-slim-bookworm@sha256:0bee7276f83efd4a1ee05bbbf4281d95ed28e079220a9457f25a93e3f1e3c31b
@@ -41,15 +36,13 @@ RUN python -m pip uninstall --yes pip setuptools wheel
 RUN useradd --system --uid 10001 --home-dir /data --shell /usr/sbin/nologin schuler
 RUN install -d -o schuler -g schuler /data
 
-# The same paths as in the builder: the kernel cache is tied to them.
+# The same path as in the builder: the scripts of a virtual environment are tied to it.
 COPY --from=builder /opt/schuler /opt/schuler
-COPY --from=builder /opt/schuler-kernels /opt/schuler-kernels
 
 # All that is ever written goes below /data, so the root may be read-only.
 ENV PATH=/opt/schuler/bin:$PATH \
     HOME=/data \
     TMPDIR=/data \
-    SCHULER_CACHE_DIR=/opt/schuler-kernels \
     PYTHONDONTWRITEBYTECODE=1
 USER schuler
 WORKDIR /data

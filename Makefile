@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test nightly check docs format unit windows paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
+.PHONY: help setup run test nightly check docs format unit windows paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages wheel sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser (PORT=...: there)'
@@ -43,6 +43,7 @@ help:
 	@echo 'make format   lay the code out'
 	@echo 'make languages  collect the texts of the page, and compile their translations'
 	@echo 'make guide    write docs/scenario.md, docs/networks.md, the questions of docs/interface.md and the JSON Schema anew'
+	@echo 'make wheel    a wheel with compiled kernels, into dist: its first start compiles nothing on most processors'
 	@echo 'make sbom     write build/sbom.json (CycloneDX) from the lock: what an installation holds; needs no network'
 	@echo 'make audit    look the locked packages up among the published vulnerabilities; needs the network'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
@@ -189,6 +190,10 @@ guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario.schema_file
 	@$(BIN)/python -m navcore.analysis.network_table
 	@$(BIN)/python -m navcore.questions.page
+
+wheel: $(STAMPS)/project
+	@$(BIN)/python -m navcore.warm portable
+	@$(PIP) wheel --no-deps --no-index --no-build-isolation --wheel-dir dist .
 
 sbom: $(STAMPS)/supply
 	@$(BIN)/python -m tools.supply sbom

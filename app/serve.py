@@ -157,11 +157,11 @@ class Dashboard:
             prepare()
             import schuler_bench.shell.page  # noqa: F401
             from navcore.engine.simulation import simulate
-            from navcore.foundation.kernel_cache import cache_folder
+            from navcore.foundation.kernel_cache import ready
             from schuler_bench.session.sessions import first_scenario
 
             load(self._views)
-            cache_folder()  # nothing can be shown without it
+            ready()  # nothing can be shown without kernels, or a place for them
             guarded.warm()
             with self._lock:
                 sessions = self.sessions

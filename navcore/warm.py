@@ -2,8 +2,11 @@
 
 ``python -m navcore.warm`` does so and says what is under way. A second process, ``python -m navcore.warm
 sensors``, compiles the motions and the simulated IMU meanwhile: two fifths of the work.
+``python -m navcore.warm portable`` compiles them for a family of processors instead, into the package itself:
+a wheel that is built then holds them.
 """
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -17,9 +20,10 @@ from navcore.alignment.fine import coarse_alignment
 from navcore.engine.ensemble import outcomes
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
+from navcore.foundation.compiled import PORTABLE_SETTINGS
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
-from navcore.foundation.kernel_cache import cache_folder, compiling, complete
+from navcore.foundation.kernel_cache import SHIPPED, cache_folder, compiling, complete
 from navcore.motion.static import StaticMotion
 from navcore.motion.truth import Site
 from navcore.scenario.model import Scenario
@@ -168,9 +172,13 @@ def compile_once(progress: Callable[[str], None] = lambda what: None) -> None:
 
 def main() -> None:
     """Compile every kernel into the cache, saying what is under way."""
-    if sys.argv[1:] == ["sensors"]:
-        warm_sensors()
-        return
+    match sys.argv[1:]:
+        case ["sensors"]:
+            warm_sensors()
+            return
+        case ["portable"]:
+            os.environ |= {"SCHULER_CACHE_DIR": str(SHIPPED), **PORTABLE_SETTINGS}
+            os.execv(sys.executable, [sys.executable, "-m", "navcore.warm"])
     try:
         compile_once(lambda what: print(f"kernels: {what}", file=sys.stderr, flush=True))
     except InputError as error:

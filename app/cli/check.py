@@ -112,9 +112,9 @@ def _is_preset(file: str) -> bool:
 
 def _compile_kernels() -> None:
     """Compile what is missing: a bounded child has no time for it, and cannot keep it."""
-    from navcore.foundation.kernel_cache import complete
+    from navcore.foundation.kernel_cache import ready
 
-    if not complete():
+    if not ready():
         from navcore.warm import compile_once
 
         compile_once(lambda what: say(f"kernels: {what}"))

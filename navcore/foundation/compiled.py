@@ -3,6 +3,7 @@
 ``python -m navcore.warm`` compiles every kernel once.
 """
 
+import os
 import time
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -10,10 +11,35 @@ from typing import Any, TypeVar
 import numba
 from numba.core import config, event
 
-from navcore.foundation.kernel_cache import KernelCache, KernelLocator, any_folder
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.kernel_cache import PORTABLE, KernelCache, KernelLocator, any_folder
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
+PORTABLE_SETTINGS = {"NUMBA_CPU_NAME": PORTABLE, "NUMBA_CPU_FEATURES": ""}
+"""Settings of numba with which the kernels of a wheel are compiled."""
+_UNSET = (
+    *("BOUNDSCHECK", "DEBUGINFO", "DEBUGINFO_DEFAULT", "DISABLE_JIT", "ENABLE_AVX", "JIT_COVERAGE"),
+    *("LOOP_VECTORIZE", "OPT", "SLP_VECTORIZE", "CPU_NAME", "CPU_FEATURES"),
+)
+
+
+def _refuse_settings() -> None:
+    """Refuse settings of numba that change the machine code: its cache does not tell them apart.
+
+    Raises
+    ------
+    InputError
+        Names each of them.
+    """
+    names = [f"NUMBA_{name}" for name in _UNSET]
+    found = {name: value for name in names if (value := os.environ.get(name)) is not None}
+    if found and found != PORTABLE_SETTINGS:
+        allowed = "must not be set: the kernels are compiled with numba's own settings"
+        raise InputError(Fault("environment", name, value, allowed) for name, value in found.items())
+
+
+_refuse_settings()
 config.CACHE_DIR = str(any_folder())  # pyright: ignore[reportAttributeAccessIssue]
 config.CACHE_LOCATOR_CLASSES = (  # pyright: ignore[reportAttributeAccessIssue]
     f"{KernelLocator.__module__}.{KernelLocator.__qualname__},UserProvidedCacheLocator"

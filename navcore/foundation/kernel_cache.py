@@ -1,10 +1,10 @@
 """Where the machine code of the kernels is kept, under a name that only the compiled text decides.
 
 The folder is named after the digest of `navcore.foundation.kernel_digest` and lies under
-``SCHULER_CACHE_DIR``, else the user's cache folder, else (no home, or a read-only one) a temporary folder; a
-cache that root has compiled, or that is read-only, is copied to a writable place first, over a copy that is
-not complete: further kernels may have to be compiled. Where nothing can be written to, a complete one is used
-where it lies.
+``SCHULER_CACHE_DIR``, the user's cache folder or a temporary folder. Of these the first that is complete is
+used where it lies, read-only or not; where none is complete, the first that can be written to.
+A wheel may hold kernels for a family of processors (`SHIPPED`): a kernel that is not in the folder is taken
+from there.
 Forming that digest takes some 150 ms, so it is kept beside the folders under the digest of the raw sources.
 Folders that nothing has used for a month are removed when kernels are compiled.
 """
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import logging
 import os
+import platform
 import re
 import shutil
 import sys
@@ -25,6 +26,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile, _CacheLocator
+from numba.core.codegen import get_host_cpu_features
 
 from navcore.foundation import kernel_files
 from navcore.foundation.errors import Fault, InputError
@@ -34,6 +36,11 @@ UNUSED_S = 30.0 * 86400.0
 """A folder of kernels that nothing has used for so long is removed, s."""
 ROOM_BYTES = 64 << 20
 """All kernels of one version take 40 MiB."""
+SHIPPED = PACKAGE / "_kernels"
+"""Kernels that came with the wheel. They are code of the package, and trusted as its other files are."""
+PORTABLE = "x86-64-v3" if platform.machine() in ("x86_64", "AMD64") else "generic"
+"""Processor, as LLVM names it, that the shipped kernels are compiled for."""
+_NEEDED = ("avx2", "bmi2", "fma", "lzcnt", "movbe") if PORTABLE == "x86-64-v3" else ()
 _A_DAY_S = 86400.0
 _KNOWN = "digests"
 _COMPLETE = "complete"
@@ -112,7 +119,9 @@ class KernelCache(FunctionCache):
 
     def __init__(self, function: Any) -> None:
         super().__init__(function)
-        self._cache_file = _Files(self._cache_path, self._impl.filename_base, kernel_hash())
+        name, folder = self._impl.filename_base, str(SHIPPED / _name() / function.__module__)
+        self._cache_file = _Files(self._cache_path, name, kernel_hash())
+        self._shipped = IndexDataCacheFile(folder, name, kernel_hash())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Load the machine code for a signature; None when there is none that can be read.
@@ -122,9 +131,15 @@ class KernelCache(FunctionCache):
         InputError
             See `cache_folder`: only now, so that a program without kernels can be imported and say so.
         """
-        cache_folder()
         with suppress(OSError):
-            return super().load_overload(sig, target_context)
+            if (found := super().load_overload(sig, target_context)) is not None:
+                return found
+        if shipped() is not None:
+            (system, _, _), own = (key := self._index_key(sig, target_context.codegen()))[1], key[2]
+            if (data := self._shipped.load((sig, (system, PORTABLE, ""), own))) is not None:
+                return self._impl.rebuild(target_context, data)
+        cache_folder()
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the machine code for a signature, on a full disk or a read-only one as long as we run."""
@@ -166,35 +181,39 @@ def cache_folder() -> Path:
     InputError
         Nothing can be written to, and there is no complete one.
     """
-    name, bases = f"kernels-{kernel_hash()}", _bases()
+    folders = [base / _name() for base in _bases()]
+    for folder in folders:
+        with suppress(OSError):  # it is missing, or lies in a folder that cannot be searched
+            if (folder / _COMPLETE).is_file() and not kernel_files.untrusted(folder):
+                _used(folder)
+                return folder
     named = os.environ.get("SCHULER_CACHE_DIR") or _user_cache()
     why_not = "" if named else "there is no home folder"
-    for at, base in enumerate(bases):
-        folder = base / name
-        missing, begun = not _exists(folder), not _exists(folder / _COMPLETE)
-        others = [other / name for other in bases[:at] if missing or _exists(other / name / _COMPLETE)]
-        copied = begun and any(kernel_files.copy(other, folder) for other in others)
-        if begun and not copied and (as_it_lies := _complete_in(bases[:at], name)):
-            return as_it_lies
+    for folder in folders:
+        missing = not _exists(folder)
         reason = kernel_files.refusal(folder)
         if not reason:
             _used(folder)
-            if missing and why_not and not copied:
-                _log.warning("compiled kernels are kept in %s: %s", base, why_not)
+            if missing and why_not and shipped() is None:
+                _log.warning("compiled kernels are kept in %s: %s", folder.parent, why_not)
             return folder
-        why_not = f"{base} {reason}"
-    if as_it_lies := _complete_in(bases, name):
-        return as_it_lies
+        why_not = f"{folder.parent} {reason}"
     nowhere = "no folder for compiled kernels can be written to: name one in SCHULER_CACHE_DIR"
     raise InputError(Fault("kernels", "", None, nowhere))
 
 
-def _complete_in(bases: list[Path], name: str) -> Path | None:
-    for folder in (base / name for base in bases):
-        with suppress(OSError):
-            if (folder / _COMPLETE).is_file() and not kernel_files.untrusted(folder):
-                return folder
-    return None
+def _name() -> str:
+    return f"kernels-{kernel_hash()}"
+
+
+@cache
+def shipped() -> Path | None:
+    """Folder of the kernels that came with the wheel; None where there are none that fit this machine."""
+    folder = SHIPPED / _name()
+    if not _exists(folder / _COMPLETE):
+        return None
+    features = get_host_cpu_features().split(",") if _NEEDED else []
+    return folder if all(f"+{needed}" in features for needed in _NEEDED) else None
 
 
 def any_folder() -> Path:
@@ -247,6 +266,17 @@ def prune(now: float | None = None) -> list[Path]:
 def complete() -> bool:
     """Whether every kernel has been compiled into the folder."""
     return (cache_folder() / _COMPLETE).is_file()
+
+
+def ready() -> bool:
+    """Whether no kernel need be compiled: all came with the wheel, or are in the folder.
+
+    Raises
+    ------
+    InputError
+        See `cache_folder`.
+    """
+    return shipped() is not None or complete()
 
 
 @contextmanager

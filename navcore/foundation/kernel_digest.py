@@ -134,7 +134,7 @@ def source_digest() -> str:
 
 
 def kernel_digest() -> str:
-    """Digest of all that is compiled and of Python's, numba's and the machine's version, 16 hex digits."""
+    """Digest of all that is compiled, and for which Python, numba and kind of machine, 16 hex digits."""
     digest = hashlib.sha256(_versions())
     for text in sorted(kernel_texts()):
         digest.update(text.encode())
@@ -142,4 +142,5 @@ def kernel_digest() -> str:
 
 
 def _versions() -> bytes:
-    return f"{sys.version}|{numba.__version__}|{platform.machine()}".encode()
+    # Not the build of Python: machine code depends on its bytecode and binary interface alone.
+    return f"{sys.implementation.cache_tag}|{numba.__version__}|{sys.platform}|{platform.machine()}".encode()

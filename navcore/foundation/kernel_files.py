@@ -5,11 +5,10 @@ therefore never used; modes are set here, whatever the umask.
 """
 
 import os
-import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
@@ -100,40 +99,3 @@ def untrusted(folder: Path) -> str:
     """
     parts = (distrust(path) for path in (folder, *folder.rglob("*")))
     return distrust(folder.parent, shared=True) or next(filter(None, parts), "")
-
-
-def copy(source: Path, target: Path) -> bool:
-    """Copy a folder that is trusted in all its parts; False when it cannot be used or copied.
-
-    Parameters
-    ----------
-    source : Path
-        May be missing.
-    target : Path
-        The copy takes its place by a rename: a process that starts at the same time never sees half of it.
-    """
-    before = _number(target)
-    try:
-        if untrusted(source):
-            return False
-        make_folder(target.parent)
-        with tempfile.TemporaryDirectory(dir=target.parent) as folder:
-            copied = Path(folder) / "copy"
-            shutil.copytree(source, copied, ignore=shutil.ignore_patterns(".*", "lock"))
-            for path in (copied, *copied.rglob("*")):
-                path.chmod(_FOLDER if path.is_dir() else _FILE)
-            if _number(target) == before:  # else another process has been quicker
-                with suppress(FileNotFoundError):
-                    target.rename(Path(folder) / "replaced")
-                copied.rename(target)
-    except OSError:
-        return False
-    return True
-
-
-def _number(path: Path) -> int | None:
-    """Number by which the file system knows what lies there."""
-    try:
-        return path.stat().st_ino
-    except OSError:
-        return None

@@ -125,7 +125,8 @@ def simulated_side_by_side(
     logs = [_active(reference, one) for one in each]
     log = logs[0]
     noise, lsb = log.noise(samples)
-    own = np.stack(
+    # One layout and one type of number for every scenario: another is another kernel.
+    own = np.ascontiguousarray(
         [
             np.broadcast_to(one.own(time_s.size, interval, seed, noise), (time_s.size, 2))
             for one, seed in zip(logs, seeds, strict=True)
@@ -135,7 +136,7 @@ def simulated_side_by_side(
     make = partial(log.readings, truth, time_s, lsb)
     readings = kept(key, make) if parts is None else make()
     error = np.empty((time_s.size, 2, width))
-    _read(readings.along_axes, own, lsb, readings.turn, readings.rest, error)
+    _read(readings.along_axes, own, float(lsb), readings.turn, readings.rest, error)
     for part in log.parts:
         if part.after:
             error += part.after(time_s)[:, :, None]

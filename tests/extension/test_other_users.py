@@ -13,7 +13,6 @@ from typing import NamedTuple
 import pytest
 
 from navcore.foundation.kernel_cache import cache_folder, complete
-from navcore.foundation.kernel_files import copy
 from schuler_bench.bench.process import environment, free_port
 from schuler_bench.bench.visitor import Visitor
 from tests.attack.conftest import eventually
@@ -50,7 +49,8 @@ def place() -> Iterator[Place]:
     for folder in (made.home, made.scratch):
         folder.mkdir()
         folder.chmod(0o1777)
-    assert copy(cache_folder(), made.kernels / cache_folder().name)
+    made.kernels.mkdir(0o755)
+    shutil.copytree(cache_folder(), made.kernels / cache_folder().name)
     yield made
     shutil.rmtree(top)
 
@@ -88,7 +88,8 @@ def test_every_command_works_with_the_kernels_that_root_has_compiled(place: Plac
         assert (done.returncode, done.stderr) == (0, ""), name
         assert "saved to" not in done.stdout, "the kernels are there already"
         if name == "run":
-            assert "data loaded from" in done.stdout
+            assert f"data loaded from '{place.kernels}" in done.stdout, "they are used where they lie"
+    assert not [*place.home.rglob("*.nbc"), *place.scratch.rglob("*.nbc")]
 
 
 @pytest.mark.parametrize("name", ["check", "run"])

@@ -4,9 +4,11 @@ Beside a user's own `app`, and installed as a wheel, by way of the source distri
 """
 
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
+import zipfile
 from importlib.metadata import Distribution
 from pathlib import Path
 
@@ -70,6 +72,28 @@ def python(request: pytest.FixtureRequest, repo_root: Path, tmp_path_factory: py
     python = folder / "own" / "bin" / "python"
     command(*pip, "--python", python, "install", *offline, *built, cwd=folder)
     return python
+
+
+def test_the_wheel_holds_kernels_that_were_compiled_into_the_package(repo_root: Path, tmp_path: Path) -> None:
+    """Git ignores them; nothing else that it ignores may come along."""
+    tree, code = tmp_path / "tree", "navcore/_kernels/kernels-0/navcore.module/module.kernel-0.py311.1.nbc"
+    for name in ("pyproject.toml", "README.md", "LICENSE", ".gitignore"):
+        tree.mkdir(exist_ok=True)
+        shutil.copy(repo_root / name, tree)
+    for held in (
+        code,
+        "navcore/foundation/version.py",
+        "navcore/__pycache__/old.pyc",
+        "app/__init__.py",
+        "assets/a",
+    ):
+        (tree / held).parent.mkdir(parents=True, exist_ok=True)
+        (tree / held).write_text('__version__ = "1"\n')
+    command(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", tmp_path, cwd=tree)
+    (built,) = tmp_path.glob("*.whl")
+    names = set(zipfile.ZipFile(built).namelist())
+    assert code in names and "schuler_bench/__init__.py" in names
+    assert not [name for name in names if name.endswith(".pyc")]
 
 
 @pytest.mark.slow

@@ -11,8 +11,70 @@ from pathlib import Path
 import pytest
 
 from navcore.foundation import kernel_cache, kernel_files
+from navcore.foundation.compiled import PORTABLE_SETTINGS
 from navcore.foundation.errors import InputError
 from schuler_bench.bench.process import environment
+
+
+@pytest.mark.parametrize(
+    ("settings", "refused"),
+    [
+        ({"NUMBA_DISABLE_JIT": "1"}, ["NUMBA_DISABLE_JIT"]),
+        ({"NUMBA_OPT": "0", "NUMBA_BOUNDSCHECK": "1"}, ["NUMBA_BOUNDSCHECK", "NUMBA_OPT"]),
+        ({"NUMBA_CPU_NAME": "nonsense"}, ["NUMBA_CPU_NAME"]),
+        (PORTABLE_SETTINGS, []),
+        ({"NUMBA_DEBUG_CACHE": "0", "NUMBA_NUM_THREADS": "1"}, []),
+    ],
+)
+def test_settings_that_change_the_machine_code_are_refused_by_name(
+    settings: dict[str, str], refused: list[str]
+):
+    program = [sys.executable, "-m", "schuler_bench", "run", "zha-fast", "--set", "run.duration_h=0"]
+    done = subprocess.run(program, env=environment() | settings, capture_output=True, text=True, check=False)
+    lines = done.stderr.splitlines()
+    assert done.returncode == 2
+    if refused:
+        assert [line.split(" = ")[0] for line in lines] == [f"environment: {name}" for name in refused]
+        assert all("must not be set" in line for line in lines)
+    else:
+        assert "environment" not in done.stderr and "run.duration_h" in done.stderr
+
+
+SHIPPED = """
+from pathlib import Path
+import navcore.foundation.kernel_cache as cache
+cache.SHIPPED = Path("{shipped}")
+if {needed}:
+    cache._NEEDED = ("a processor of tomorrow",)
+from numba.core import event
+from navcore.foundation.compiled import COMPILATION
+"""
+
+
+@pytest.mark.parametrize(
+    ("needed", "compiled"), [(False, 0), (True, 1)], ids=["they fit", "a feature is missing"]
+)
+def test_kernels_of_the_wheel_are_used_where_they_fit(
+    portable: Path, tmp_path: Path, needed: bool, compiled: int
+):
+    """One kernel stands for all; nothing is written, wherever it could be."""
+    begin = SHIPPED.format(shipped=portable, needed=needed)
+    program = begin + KERNEL.format(umask=0o022) + "print(COMPILATION.count, cache.ready())\n"
+    done = run_kernel(program, tmp_path / "own")
+    assert done.stdout.split() == ["computed", str(compiled), str(compiled == 0)]
+    assert bool(list(tmp_path.rglob("*.nbc"))) is (compiled > 0)
+
+
+@pytest.fixture(scope="module")
+def portable(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One kernel, compiled as those of a wheel are."""
+    base = tmp_path_factory.mktemp("shipped") / "kernels"
+    done = run_kernel(KERNEL.format(umask=0o022), base, PORTABLE_SETTINGS)
+    assert done.stdout == "computed\n", done.stderr
+    (folder,) = base.glob("kernels-*")
+    (folder / "complete").touch()
+    return base
+
 
 KERNEL = """
 import os
@@ -26,9 +88,17 @@ print("computed")
 
 def compiled(base: Path, umask: int = 0o022) -> subprocess.CompletedProcess[str]:
     """Compile, or load, one kernel in a process of its own."""
+    return run_kernel(KERNEL.format(umask=umask), base)
+
+
+def run_kernel(
+    program: str, base: Path, settings: dict[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a program whose kernels are kept under a folder."""
     places = {"SCHULER_CACHE_DIR": str(base), "HOME": str(base / "home"), "TMPDIR": "/tmp"}
-    program = [sys.executable, "-c", KERNEL.format(umask=umask)]
-    return subprocess.run(program, env=environment() | places, capture_output=True, text=True, check=False)
+    given = environment() | places | (settings or {})
+    line = [sys.executable, "-c", program]
+    return subprocess.run(line, env=given, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("umask", [0o077, 0o002])
@@ -54,17 +124,13 @@ def test_everyone_may_read_the_machine_code_and_its_owner_alone_write_it(tmp_pat
     ],
     ids=["ours", "group may add", "group may write", "others may rename", "like /tmp", "others may add"],
 )
-def test_what_others_can_write_to_is_neither_used_nor_copied(
-    tmp_path: Path, spoil: Callable[[Path], None], trusted: bool
-):
+def test_what_others_can_write_to_is_not_used(tmp_path: Path, spoil: Callable[[Path], None], trusted: bool):
     folder = tmp_path / "base" / "kernels"
     kernel_files.make_folder(folder)
     with kernel_files.replacing(folder / "code") as file:
         file.write(b"code")
     spoil(folder)
     assert (kernel_files.untrusted(folder) == "") is trusted
-    assert kernel_files.copy(folder, tmp_path / "copies" / "kernels") is trusted
-    assert (tmp_path / "copies" / "kernels" / "code").exists() is trusted
 
 
 @pytest.mark.skipif(os.name != "posix" or os.getuid() != 0, reason="needs root to give files away")
@@ -75,7 +141,6 @@ def test_what_another_ordinary_user_owns_is_not_used(tmp_path: Path, part: str):
     (folder / "code").touch(0o644)
     os.chown(folder / part, 10001, 10001)
     assert kernel_files.untrusted(folder) == "belongs to another user"
-    assert not kernel_files.copy(folder, tmp_path / "copies" / "kernels")
 
 
 def test_an_interrupted_write_leaves_what_was_there(tmp_path: Path):
@@ -102,60 +167,43 @@ def test_without_any_folder_a_program_can_be_imported_and_a_kernel_says_so(
 
 
 @pytest.mark.parametrize(
-    ("own", "room", "used", "code"),
+    ("shared", "own", "used"),
     [
-        ("none", True, "own", "shared"),
-        ("begun", True, "own", "shared"),
-        ("complete", True, "own", "own"),
-        ("none", False, "shared", "shared"),
-        ("begun", False, "shared", "shared"),
+        ("complete", "none", "shared"),
+        ("complete", "begun", "shared"),
+        ("begun", "complete", "own"),
+        ("begun", "begun", "own"),
+        ("spoilt", "complete", "own"),
+        ("spoilt", "none", "own"),
+        ("none", "none", "own"),
     ],
 )
-def test_a_begun_folder_of_ones_own_does_not_hide_a_complete_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: str, room: bool, used: str, code: str
+def test_a_complete_folder_is_used_where_it_lies_else_one_that_can_be_written_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, shared: str, own: str, used: str
 ):
-    def refuse(*given: object, **options: object) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    for base, kept in (("shared", "complete"), ("own", own)):
+    for base, kept in (("shared", shared), ("own", own)):
         if kept != "none":
             kernel_files.make_folder(tmp_path / base / "kernels-0")
             (tmp_path / base / "kernels-0" / "code").write_text(base)
-        if kept == "complete":
-            (tmp_path / base / "kernels-0" / "complete").touch()
+        if kept in ("complete", "spoilt"):
+            (tmp_path / base / "kernels-0" / "complete").touch(0o644)
+        if kept == "spoilt":
+            (tmp_path / base / "kernels-0" / "code").chmod(0o666)
     monkeypatch.setattr(kernel_cache, "kernel_hash", lambda: "0")
     monkeypatch.setattr(kernel_cache, "_bases", lambda: [tmp_path / "shared", tmp_path / "own"])
     refusal = kernel_files.refusal
     monkeypatch.setattr(
-        kernel_files, "refusal", lambda at: "is root's" if at.parent.name == "shared" else refusal(at)
+        kernel_files, "refusal", lambda at: "is read-only" if at.parent.name == "shared" else refusal(at)
     )
-    if not room:
-        monkeypatch.setattr(kernel_files.shutil, "copytree", refuse)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("shared/**/*")}
     kernel_cache.cache_folder.cache_clear()
     try:
         folder = kernel_cache.cache_folder()
-        assert (folder.parent.name, kernel_cache.complete()) == (used, True)
+        assert folder.parent.name == used
+        assert kernel_cache.complete() is ("complete" in (shared, own))
     finally:
         kernel_cache.cache_folder.cache_clear()
-    assert (folder / "code").read_text() == code
-    assert not list(tmp_path.glob("own/tmp*")), "an unfinished copy is left"
-
-
-def test_of_two_processes_that_copy_the_first_is_left_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    source, target = tmp_path / "shared" / "kernels", tmp_path / "own" / "kernels"
-    for folder in (source, target):
-        kernel_files.make_folder(folder)
-    copytree = kernel_files.shutil.copytree
-
-    def slowly(*given: Path, **options: Callable[[str, list[str]], set[str]]) -> None:
-        monkeypatch.undo()  # the other process begins later, and ends before this one
-        assert kernel_files.copy(source, target)
-        (target / "compiled since").touch()
-        copytree(*given, **options)
-
-    monkeypatch.setattr(kernel_files.shutil, "copytree", slowly)
-    assert kernel_files.copy(source, target)
-    assert (target / "compiled since").exists()
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("shared/**/*")} == before
 
 
 def test_a_disk_without_room_is_told_before_all_kernels_are_compiled(
