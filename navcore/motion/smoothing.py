@@ -56,16 +56,53 @@ def clamped(time_s: np.ndarray, values: np.ndarray, ends: np.ndarray) -> Spline:
 
 def smoothed_columns(time_s: np.ndarray, values: np.ndarray, smoothing_s: float) -> Spline:
     """Smoothing spline of the columns; the penalty makes its cut-off 1 / smoothing_s at the median rate."""
-    from scipy.interpolate import CubicSpline, make_smoothing_spline
-
     elapsed = time_s - time_s[0]
     if smoothing_s == 0.0 or elapsed.size < FEWEST_FIXES:
-        spline = CubicSpline(elapsed, values, bc_type="natural")
-    else:
-        penalty = smoothing_s**4 / float(np.median(np.diff(elapsed)))
-        spline = make_smoothing_spline(elapsed, values, lam=penalty)
-    starts = elapsed[:-1]
-    coefficients = np.stack(
-        [spline(starts, 3) / 6.0, spline(starts, 2) / 2.0, spline(starts, 1), spline(starts)]
-    )
-    return Spline(time_s[0], elapsed, coefficients)
+        from scipy.interpolate import CubicSpline
+
+        return Spline(time_s[0], elapsed, CubicSpline(elapsed, values, bc_type="natural").c)
+    penalty = smoothing_s**4 / float(np.median(np.diff(elapsed)))
+    return Spline(time_s[0], elapsed, _smoothing_spline(elapsed, values, penalty))
+
+
+def _smoothing_spline(x: np.ndarray, y: np.ndarray, penalty: float) -> np.ndarray:
+    """Natural cubic spline g that makes sum (y - g)^2 + penalty times the integral of g''^2 least.
+
+    scipy's `make_smoothing_spline` finds the same in a loop over the points: 35 us for each of a million.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Increasing.
+    y : ndarray, shape (n, k)
+    penalty : float
+
+    Returns
+    -------
+    ndarray, shape (4, n - 1, k)
+        Coefficients of each piece, highest power first.
+
+    References
+    ----------
+    .. [1] C. H. Reinsch, "Smoothing by spline functions", Numerische Mathematik 10, 1967, eq. 7 to 9.
+    """
+    from scipy.linalg import solveh_banded
+
+    h = np.diff(x)
+    left, right = 1.0 / h[:-1], 1.0 / h[1:]  # of the second differences, which are the rows of Q'
+    middle = -left - right
+    bands = np.zeros((3, x.size - 2))  # of R + penalty Q'Q, the diagonal first
+    bands[0] = (h[:-1] + h[1:]) / 3.0 + penalty * (left * left + middle * middle + right * right)
+    bands[1, :-1] = h[1:-1] / 6.0 + penalty * (middle[:-1] * left[1:] + right[:-1] * middle[1:])
+    bands[2, :-2] = penalty * right[:-2] * left[2:]
+    slopes = np.diff(y, axis=0) / h[:, None]
+    bend = np.zeros_like(y)  # second derivative at each point, 0 at the ends
+    bend[1:-1] = solveh_banded(bands, np.diff(slopes, axis=0), lower=True, overwrite_ab=True)
+    push = np.diff(bend, axis=0) / h[:, None]
+    smooth = y.astype(float)
+    smooth[1:-1] -= penalty * np.diff(push, axis=0)
+    smooth[0] -= penalty * push[0]
+    smooth[-1] += penalty * push[-1]
+    slopes = np.diff(smooth, axis=0) / h[:, None]
+    linear = slopes - h[:, None] * (2.0 * bend[:-1] + bend[1:]) / 6.0
+    return np.stack([push / 6.0, bend[:-1] / 2.0, linear, smooth[:-1]])

@@ -1,6 +1,7 @@
 """Motion `track`: the truth from recorded positions is consistent, follows the record, refuses bad ones."""
 
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from navcore.foundation.earth import SPHERE, WGS84, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
+from navcore.motion.smoothing import smoothed_columns
 from navcore.motion.track import TrackMotion
 from navcore.motion.truth import (
     AE,
@@ -245,3 +247,33 @@ def test_velocity_columns_give_the_velocity_at_the_start_of_a_turn(tmp_path, giv
     assert (error[0] > 0.2) == (given is not True)
     assert error[30:-30].max() < 0.02
     assert np.gradient(truth[:, VE]) == pytest.approx(truth[:, AE], abs=0.02)
+
+
+def test_the_smoothing_spline_is_the_one_that_is_least():
+    """Against scipy's, on uneven times."""
+    from scipy.interpolate import make_smoothing_spline
+
+    rng = np.random.default_rng(4)
+    x = np.cumsum(rng.uniform(0.5, 1.5, 400))
+    y = np.column_stack([np.cumsum(rng.normal(size=x.size)), 100.0 * np.sin(x / 30.0)])
+    spline = smoothed_columns(x, y, 5.0)
+    penalty = 5.0**4 / float(np.median(np.diff(x)))
+    known = make_smoothing_spline(x - x[0], y, lam=penalty)
+    fine = np.linspace(x[0], x[-1], 4001)
+    np.testing.assert_allclose(spline.at(fine), known(fine - x[0]), rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(spline.rate(fine), known(fine - x[0], 1), rtol=0.0, atol=1e-8)
+
+
+def test_a_million_points_are_smoothed_without_a_loop_over_them():
+    """A loop in Python takes 35 us a point: half a minute for a recording of 16 MiB."""
+    counted = [0]
+
+    def count(frame: object, event: str, argument: object) -> None:
+        counted[0] += 1
+
+    sys.setprofile(count)
+    try:
+        smoothed_columns(np.arange(20000.0), np.zeros((20000, 2)), 5.0)
+    finally:
+        sys.setprofile(None)
+    assert counted[0] < 20000
