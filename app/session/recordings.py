@@ -13,6 +13,8 @@ from schuler_bench.session.uploads import IMU, Uploads
 _ALIGNED_S = 600.0
 _ALIGNED_PART = 0.5
 """Of a short IMU record, that is at most spent on the alignment."""
+MOST_ROWS = 50_000
+"""Output rows of a run on a recording; one for each step of a long one takes gigabytes."""
 _SPEEDS = ("water", "ground", "velocity")
 
 
@@ -73,7 +75,9 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
     span_s = math.floor(window.span_s / step_s) * step_s
     data["run"] |= {
         "duration_h": span_s / HOUR,
-        "output_step_s": min(parsed.run.output_step_s, max(step_s, 1.0)),
+        "output_step_s": max(
+            min(parsed.run.output_step_s, max(step_s, 1.0)), math.ceil(span_s / step_s / MOST_ROWS) * step_s
+        ),
     }
     notes.append(Text("The duration is the {span_s:g} s that all uploaded streams share.", span_s=span_s))
     if parsed.motion.recorded:

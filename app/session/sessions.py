@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from navcore.engine.run import Run
+from navcore.foundation.stage_cache import bytes_of
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import copied_from, log_name, new_shared_id, shared_in
@@ -34,6 +35,8 @@ MOST_SESSIONS = 64
 """Sessions held without an open page; with one they are always held."""
 MOST_IDLE_RUNS = 8
 """Runs kept of sessions without an open page; the others are computed again on return."""
+MOST_IDLE_BYTES = 64 << 20
+"""Bytes that these runs may take together, the newest first."""
 MOST_SHARED = 64
 """States that can be shared when there is no store to put them in."""
 FIRST_PRESET = "sikuliaq-like"
@@ -262,10 +265,13 @@ class Sessions:
         for session in idle[: max(0, len(idle) - MOST_SESSIONS)]:
             del self._by_id[session.id]
             session.close(keep_files=self._store is not None)
-        for session in idle[: max(0, len(idle) - MOST_IDLE_RUNS)]:
-            session.run = None
-            if not session.expected:
-                session.verifier.forget()
+        left, room = MOST_IDLE_RUNS, MOST_IDLE_BYTES
+        for session in reversed(idle):
+            left, room = left - 1, room - (0 if session.run is None else bytes_of(session.run))
+            if left < 0 or room < 0:
+                session.run = None
+                if not session.expected:
+                    session.verifier.forget()
 
 
 def first_scenario() -> tuple[Scenario, str]:

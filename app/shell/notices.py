@@ -27,6 +27,7 @@ _NOTICE_COLORS: dict[Tone, Literal["red", "orange", "blue"]] = {
     "info": "blue",
 }
 _LONGEST_NOTICE = 600
+_LARGE = 1 << 20
 
 
 def tell(client: viser.ClientHandle, title: str, lines: Iterable[str], tone: Tone = "error") -> None:
@@ -36,6 +37,35 @@ def tell(client: viser.ClientHandle, title: str, lines: Iterable[str], tone: Ton
         text = text[: _LONGEST_NOTICE - 3] + "..."
     seconds = 10.0 if tone == "info" else 15.0
     client.add_notification(title, text, color=_NOTICE_COLORS[tone], auto_close_seconds=seconds)
+
+
+@contextmanager
+def busy(client: viser.ClientHandle, title: str, size: int) -> Iterator[Callable[[str], None]]:
+    """Say at once that something large is being read; give ``say(what)``, which says what comes next.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        Whose page says it.
+    title : str
+        Above.
+    size : int
+        Bytes; what is small is over before anybody has read a word.
+    """
+    if size < _LARGE:
+        yield lambda what: None
+        return
+    shown = client.add_notification(title, "", loading=True, with_close_button=False, auto_close_seconds=None)
+    client.flush()
+
+    def say(what: str) -> None:
+        shown.body = what
+        client.flush()
+
+    try:
+        yield say
+    finally:
+        shown.remove()
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from navcore.foundation.stage_cache import MAP_SUFFIX
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets, to_toml
 from schuler_bench.editing import edits
+from schuler_bench.http.limits import MIB
 from schuler_bench.session.history import first_editable
 from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.session import Session
@@ -68,7 +69,12 @@ class Opening:
         """Keep an uploaded recording and run on it, or open an uploaded scenario."""
         session = self._session
         title = Text("The file cannot be used; nothing was changed")
-        with session.lock, notices.told(self._client, title, self._refresh):
+        reading = Text("Reading {name}, {size:.1f} MiB", name=name[:60], size=len(content) / MIB)
+        with (
+            notices.busy(self._client, reading, len(content)) as say,
+            session.lock,
+            notices.told(self._client, title, self._refresh),
+        ):
             if name.lower().endswith(".toml"):
                 if is_study(text := content[: LARGEST_TEXT + 1].decode("utf-8", "replace")):
                     self._take_study(name[:60], text)
@@ -76,8 +82,10 @@ class Opening:
                 opened = opened_scenario(name, content, session.uploads)
                 session.change(opened, None, origin=name[:60], selected=first_editable(opened))
                 return
+            say(Text("1 of 2: what it holds; about a second for each MiB."))
             upload = session.uploads.add(name, content)
             session.on_change()
+            say(Text("2 of 2: the ship's motion and log from it."))
             self._run_on(upload)
 
     def _take_study(self, name: str, text: str) -> None:

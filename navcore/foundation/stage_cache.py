@@ -22,7 +22,7 @@ _CACHE_BYTES = 300 * 1024 * 1024
 _owner: ContextVar[Hashable] = ContextVar("owner", default=None)
 
 
-def _size(value: Any) -> int:
+def bytes_of(value: Any) -> int:
     """Bytes of the arrays in a value, whatever objects and containers they lie in, and 1 KiB."""
     return 1024 + _array_bytes(value)
 
@@ -68,7 +68,7 @@ class SharedCache:
 
     def put(self, key: Hashable, value: Any, owner: Hashable) -> None:
         """Keep a value; beyond the limit the oldest entries of whoever holds most are dropped."""
-        size = _size(value)
+        size = bytes_of(value)
         with self._lock:
             self._drop(key)
             if size > self._most_bytes:

@@ -238,12 +238,19 @@ def test_no_search_takes_the_time_of_the_server(name: str, monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize(
-    ("lane", "others", "helped"), [("long", True, True), ("long", False, False), ("answer", True, False)]
+    ("lane", "others", "large", "helped"),
+    [
+        ("long", True, False, True),
+        ("long", False, False, False),
+        ("long", False, True, True),
+        ("answer", True, False, False),
+    ],
 )
 def test_a_long_run_beside_others_is_done_by_a_helper(
-    lane: str, others: bool, helped: bool, monkeypatch: pytest.MonkeyPatch
+    lane: str, others: bool, large: bool, helped: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is the same run to the last bit; alone, or short, it stays where the last run is at hand."""
+    monkeypatch.setattr("schuler_bench.jobs.long_runs._MOST_HERE", 0.0 if large else 1e12)
     turns = Scheduler(2, 1e12)
     if others:
         turns._answered("another", 0.01)
