@@ -5,6 +5,8 @@ SHELL  := /bin/sh
 BIN    := .venv/bin
 STAMPS := .venv/.stamps
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --no-input --quiet
+# Says every two seconds that a step goes on: pip and venv say nothing.
+TICK   := seconds=0; while sleep 2; do seconds=$$((seconds + 2)); echo "   ... $$seconds s"; done & tick=$$!; trap 'kill $$tick' EXIT
 LOCKED := install --require-hashes --only-binary :all:
 
 # A virtual environment that was copied, moved, or has lost its Python is made anew.
@@ -52,7 +54,8 @@ help:
 
 setup: $(STAMPS)/kernels
 
-run: setup
+# The server compiles the kernels beside itself: the first picture needs half of them.
+run: $(STAMPS)/project
 	@$(BIN)/schuler serve --open $(if $(findstring command,$(origin PORT)),--port $(PORT))
 
 # SLOW=yes: the tests that are marked slow too, as before a merge.
@@ -140,17 +143,17 @@ $(STAMPS)/python:
 	echo "== virtual environment of `"$$python" --version`"; \
 	rm -rf $(STAMPS); \
 	if $(BIN)/python -c 'import pip, sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then clear=; else clear=--clear; fi; \
-	"$$python" -m venv $$clear .venv
+	$(TICK); "$$python" -m venv $$clear .venv
 	@mkdir -p $(STAMPS) && pwd -P > $@
 
 $(STAMPS)/packages: requirements/run.lock requirements/build.lock $(STAMPS)/python
-	@echo '== installing the locked packages'; start=`date +%s`; \
+	@echo '== installing the locked packages'; start=`date +%s`; $(TICK); \
 	$(PIP) $(LOCKED) -r requirements/run.lock -r requirements/build.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
 # The version is in navcore/foundation/version.py, the command in pyproject.toml.
 $(STAMPS)/project: pyproject.toml navcore/foundation/version.py $(STAMPS)/packages | schuler_bench
-	@$(PIP) install --no-deps --no-build-isolation --no-index --editable . && touch $@
+	@$(TICK); $(PIP) install --no-deps --no-build-isolation --no-index --editable . && touch $@
 
 # The folder app by the name under which it is imported; git holds this link, the source distribution does not.
 schuler_bench:

@@ -6,14 +6,14 @@ import logging
 import os
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from navcore.foundation import guarded
 from navcore.foundation.errors import InputError
-from schuler_bench.jobs import helper
+from schuler_bench.jobs import helper, kernels
 from schuler_bench.jobs.words import what_failed
 from schuler_bench.languages import LANGUAGE_SCRIPTS
 from schuler_bench.logs import begin_logging
@@ -140,32 +140,43 @@ class Dashboard:
             sessions = self.sessions
         return sessions.knows(session_id)
 
-    def warm_up(self, prepare: Callable[[], None], failed: Callable[[str], None]) -> threading.Thread:
+    def warm_up(
+        self,
+        prepare: Callable[[], None],
+        failed: Callable[[str], None],
+        compile_kernels: Callable[[], None] = lambda: None,
+    ) -> threading.Thread:
         """Do in the background what the first page would have to wait for.
 
         Import what it needs, load the compiled kernels, run the scenario that a new visitor sees, and
-        ``prepare()`` the files that browsers load; ``failed(reason)`` when that cannot be done.
+        ``prepare()`` the files that browsers load; ``failed(reason)`` when that cannot be done. First
+        ``compile_kernels()`` begins what takes longest.
         """
-        thread = threading.Thread(target=self._warm_up, args=(prepare, failed), name="warm-up", daemon=True)
+        given = prepare, failed, compile_kernels
+        thread = threading.Thread(target=self._warm_up, args=given, name="warm-up", daemon=True)
         thread.start()
         return thread
 
-    def _warm_up(self, prepare: Callable[[], None], failed: Callable[[str], None]) -> None:
+    def _warm_up(
+        self,
+        prepare: Callable[[], None],
+        failed: Callable[[str], None],
+        compile_kernels: Callable[[], None],
+    ) -> None:
         try:
             with self._lock:
                 _ = self.store  # the first thing that is said: whether anything is kept
+            compile_kernels()
             prepare()
             import schuler_bench.shell.page  # noqa: F401
             from navcore.engine.simulation import simulate
-            from navcore.foundation.kernel_cache import ready
             from schuler_bench.session.sessions import first_scenario
 
             load(self._views)
-            ready()  # nothing can be shown without kernels, or a place for them
             guarded.warm()
             with self._lock:
                 sessions = self.sessions
-            sessions.prepared = simulate(first_scenario()[0])
+            sessions.prepared = kernels.when_there(lambda: simulate(first_scenario()[0]))
             collect_seldom()
         except InputError as error:
             _log.error("no scenario can be run: %s", error)
@@ -206,6 +217,7 @@ class Dashboard:
     def close(self) -> None:
         """End all sessions and remove what was uploaded and is not kept."""
         helper.stop()
+        kernels.stop()
         if "sessions" in self.__dict__:  # made with the first page
             self.sessions.close()
         elif (store := self.__dict__.get("store")) is not None:
@@ -223,6 +235,7 @@ def open_dashboard(
     inner: Inner | None = None,
     limits: Limits | None = None,
     views: Sequence[str] = VIEWS,
+    tell: Callable[[str], None] = lambda line: None,
 ) -> tuple[DashboardServer, Dashboard]:
     """Start the dashboard and return at once.
 
@@ -234,6 +247,8 @@ def open_dashboard(
         See `schuler_bench.http.server.start`.
     state, views
         See `Dashboard`.
+    tell : callable
+        Told how far the kernels are, while they are compiled.
 
     Raises
     ------
@@ -270,7 +285,7 @@ def open_dashboard(
     dashboard.keeping.watch(
         lambda fault: server.keeps_nothing(fault and (str(fault.reason), str(fault.remedy)))
     )
-    dashboard.warm_up(server.prepare, server.fail)
+    dashboard.warm_up(server.prepare, server.fail, partial(kernels.prepare, start=inner is None, tell=tell))
     return server, dashboard
 
 
@@ -327,8 +342,9 @@ def serve(
     bound_arenas()
     state = checked_folder()
     server, dashboard = open_dashboard(
-        host, port, token=token, allow_origins=allow_origins, frame_origins=frame_origins, state=state
-    )
+        host, port, token=token, allow_origins=allow_origins, frame_origins=frame_origins, state=state,
+        tell=partial(print, flush=True),
+    )  # fmt: skip
     use_cluster(cluster)
     link = link_with(server.url, token)
     print(f"Schuler Bench: {link if show_token else server.url}  (Ctrl+C ends it)", flush=True)

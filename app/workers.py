@@ -14,14 +14,16 @@ import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import Fault, InputError
 from schuler_bench.http.access import access_rules
 from schuler_bench.http.address import authority, is_loopback, listen, parse_origins
 from schuler_bench.http.limits import Limits
+from schuler_bench.jobs import kernels
 from schuler_bench.jobs.away import away_seconds
 from schuler_bench.jobs.cluster import check_address
 from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
@@ -193,6 +195,9 @@ def serve_with_workers(
         crew = Crew(count, Settings(host, bound, loopback, -1, token, *origin_lists, count, cluster))
         held.callback(crew.stop)
         name = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+        held.callback(kernels.stop)
+        with suppress(InputError):  # which the workers say
+            kernels.prepare(start=True, tell=partial(print, flush=True))
         url = f"http://{authority(name, bound)}/"
         link = link_with(url, token) if show_token else url
         greeting = f"Schuler Bench: {link}  ({count} workers; Ctrl+C ends it)"

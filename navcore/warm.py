@@ -10,7 +10,10 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,16 +23,17 @@ from navcore.alignment.fine import coarse_alignment
 from navcore.engine.ensemble import outcomes
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
-from navcore.foundation.compiled import PORTABLE_SETTINGS
+from navcore.foundation.compiled import COMPILATION, PORTABLE_SETTINGS
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
-from navcore.foundation.kernel_cache import SHIPPED, cache_folder, compiling, complete
+from navcore.foundation.kernel_cache import SHIPPED, cache_folder, compiling, complete, note_progress
 from navcore.motion.static import StaticMotion
 from navcore.motion.truth import Site
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 
+_NOTE_S, _SAY_S = 0.25, 2.5
 _IMU: dict[str, Any] = {
     "gyro_bias_dph": [0.01, 0.01, 0.01],
     "gyro_arw_dpsh": 0.001,
@@ -70,17 +74,12 @@ _KALMAN = {"damping": "kalman"}
 _RATE_HZ = 20.0
 
 
-def warm(progress: Callable[[str], None] = lambda what: None) -> None:
+def warm() -> None:
     """Run short scenarios of every kind, with every sensor error, so that each kernel is compiled once.
 
-    Parameters
-    ----------
-    progress : callable
-        Told what comes next.
+    First what the error model needs, in which most scenarios are opened.
     """
-    progress("law, error model")
     simulate(_scenario({"duration_h": 0.02}, _MOTIONS[0], 1.0, _POLICIES))
-    progress("strapdown mechanization, IMU simulation, compass alignment, averaging")
     strapdown = {"fidelity": "strapdown", "duration_h": 0.02, "rate_hz": _RATE_HZ}
     slow_log, fast_log = 1.0, _RATE_HZ
     for log_hz in (slow_log, fast_log):
@@ -89,30 +88,29 @@ def warm(progress: Callable[[str], None] = lambda what: None) -> None:
         simulate(_scenario(strapdown | {"fidelity": fidelity}, _MOTIONS[0], 1.0, [_AVERAGING]))
     for run in ({"duration_h": 0.02}, strapdown):
         simulate(_scenario(run, _MOTIONS[2], 1.0, [_KALMAN]))
-    progress("many strapdown runs at once")
     seeds = _scenario(strapdown, _MOTIONS[1], 1.0, [_COMPASS, _NETWORK])
     outcomes(seeds, seeds.method, range(2))
     for motion in _MOTIONS[1:]:
-        progress(f"{motion['kind']} motion, sensors, error model")
         simulate(_scenario({"duration_h": 0.02}, motion, 1.0, _POLICIES))
-    progress("recorded track")
     _warm_track()
-    progress("alignment with a recorded IMU")
     _warm_coarse_alignment()
 
 
 def warm_sensors() -> None:
-    """Compile what needs no law: the simulated IMU, then motions, sensors and log of the error model."""
+    """Compile what needs no law: motions, sensors and log of the error model, then the simulated IMU.
+
+    The legs come first: with the law they are all that the error model of most scenarios needs.
+    """
     samples = int(60.0 * _RATE_HZ)
     scenarios = [_scenario({"duration_h": 0.02}, motion, 1.0, [_NETWORK]) for motion in _MOTIONS]
+    for given in (scenarios[2], *scenarios):
+        environment(given)
     for given in scenarios[:3]:
         for with_sums in (False, True):
             site = Site(0.5, 0.0, 0.0)
             simulation = ImuSimulation(given.motion, site, WGS84, given.imu, _RATE_HZ, samples, 0)
             for _ in simulation.chunks(with_sums):
                 pass
-    for given in scenarios:
-        environment(given)
 
 
 def _scenario(
@@ -156,18 +154,42 @@ def compile_once(progress: Callable[[str], None] = lambda what: None) -> None:
     Parameters
     ----------
     progress : callable
-        Told what comes next.
+        Told how far it is, every few seconds.
     """
     if not complete():
-        progress("to be compiled, or being compiled by another process")
+        progress("to be compiled, once: about a minute")
     with compiling() as needed:
         if needed:
             # What it has not brought, for whatever reason, is compiled here.
-            with subprocess.Popen([sys.executable, "-m", "navcore.warm", "sensors"]) as beside:
+            sensors = [sys.executable, "-m", "navcore.warm", "sensors"]
+            with _telling(progress), subprocess.Popen(sensors) as beside:
                 try:
-                    warm(progress)
+                    warm()
                 finally:
                     beside.kill()
+
+
+@contextmanager
+def _telling(progress: Callable[[str], None]) -> Iterator[None]:
+    """Note meanwhile, for other processes too, how many kernels there are and which one is under way."""
+    over = threading.Event()
+
+    def tell() -> None:
+        said_s = 0.0
+        while not over.wait(_NOTE_S):
+            told = note_progress(COMPILATION.under_way()[0])
+            if time.monotonic() - said_s > _SAY_S:
+                said_s = time.monotonic()
+                progress(str(told))
+
+    note_progress("")
+    thread = threading.Thread(target=tell, name="progress", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 def main() -> None:

@@ -7,6 +7,8 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any
 
+from navcore.foundation.kernel_wait import waiting
+
 MOST_WAITING = 64
 """Callbacks of one visitor that may wait; a person never has so many, and a flood of them is cut off here."""
 
@@ -116,6 +118,7 @@ class FairPool(Executor):
 
 def _run(job: _Job) -> None:
     try:
-        job.future.set_result(job.call(*job.arguments, **job.named))
+        with waiting():
+            job.future.set_result(job.call(*job.arguments, **job.named))
     except BaseException as error:  # the future's reader reports it
         job.future.set_exception(error)

@@ -271,7 +271,7 @@ def answer_headers(length: int, content_type: str) -> dict[str, str]:
     }
 
 
-def health(fault: str = "", unkept: tuple[str, str] | None = None) -> str:
+def health(fault: str = "", unkept: tuple[str, str] | None = None, **notes: str) -> str:
     """Answer to ``/healthz``, JSON.
 
     Parameters
@@ -280,12 +280,15 @@ def health(fault: str = "", unkept: tuple[str, str] | None = None) -> str:
         What keeps the server from its work; empty: nothing.
     unkept : (str, str), optional
         Why it works, but keeps nothing, and what can be done.
+    **notes : str
+        Further words; empty ones are left out.
     """
     state = {"status": "ok"}
     if fault:
         state = {"status": "failed", "reason": fault}
     elif unkept is not None:
         state = {"status": "nothing is kept", "reason": unkept[0], "remedy": unkept[1]}
+    state |= {name: note for name, note in notes.items() if note}
     return json.dumps({**state, "version": __version__})
 
 

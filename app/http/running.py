@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import viser
 import websockets.asyncio.server
 
+from navcore.foundation.kernel_wait import waiting
 from navcore.foundation.text import Text
 from schuler_bench.bridge import server as bridge
 from schuler_bench.bridge.controls import Guest
@@ -175,7 +176,8 @@ class Running:
 
 def _call(callback: SessionCallback, client: viser.ClientHandle, session_id: str) -> None:
     try:
-        callback(client, session_id)
+        with waiting():
+            callback(client, session_id)
     except Exception as error:
         _log.exception("a session callback failed")
         client.add_notification(Text("Something went wrong"), what_failed(error), color="red")

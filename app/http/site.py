@@ -28,6 +28,7 @@ from schuler_bench.http.connection import Connection
 from schuler_bench.http.ids import SessionIds, is_shared
 from schuler_bench.http.page import File, Page
 from schuler_bench.http.places import Places
+from schuler_bench.jobs import kernels
 
 _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
 _PLACE_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})/place")
@@ -91,7 +92,8 @@ class Site:
             return _refuse(refusal)
         if path == "/healthz":
             status = HTTPStatus.SERVICE_UNAVAILABLE if self.fault else HTTPStatus.OK
-            return _respond(status, health(self.fault, self.unkept), "application/json")
+            told = health(self.fault, self.unkept, kernels=kernels.words())
+            return _respond(status, told, "application/json")
         websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
         pairs = parse_qsl(query, keep_blank_values=True)
         tokens = [] if websocket else [value for name, value in pairs if name == "token"]

@@ -20,6 +20,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
+from navcore.foundation.kernel_wait import Need, when_missing
 from navcore.foundation.progress import part_of
 from navcore.foundation.stage_cache import keep_only, working_for
 from navcore.foundation.text import Text
@@ -190,6 +191,7 @@ def _help(pipe: Connection) -> None:
     """Do one job after the other, until the server has gone or has none for long."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is for the server
     os.nice(_NICE)
+    when_missing(Need.WAIT)
     with _server_there():
         while pipe.poll(_IDLE_S):
             function, item, last = pickle.loads(pipe.recv_bytes())

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from navcore.foundation.errors import InputError, StoppedError
+from navcore.foundation.kernel_wait import KernelAwaited
 from navcore.foundation.text import Text
 from schuler_bench.jobs.elsewhere import LOST, carried_out
 from schuler_bench.jobs.load import heavy_load
@@ -182,10 +183,11 @@ class Search(Generic[Asked, Found]):
         result, words = None, ()
         try:
             result = self._carry_out(asked, progress, watch)
-        except ElsewhereLost:
+        except (ElsewhereLost, KernelAwaited) as reason:
+            lost = isinstance(reason, ElsewhereLost)
             with self._lock:
                 if self._job is job:
-                    self.fraction, self.words = 0.0, (LOST,)
+                    self.fraction, self.words = 0.0, (LOST,) if lost else ()
             self._tell()
             raise
         except StoppedError:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
+from navcore.foundation.kernel_wait import KernelAwaited
 from navcore.foundation.stage_cache import working_for
 from schuler_bench.jobs.scheduler import Lane, Load, Scheduler, Ticket, scheduler
 
@@ -14,6 +15,8 @@ Job = TypeVar("Job")
 SUPERSEDE_AFTER_S = 0.3
 """A run younger than this is let end although a newer job waits: while a slider is dragged, jobs come faster
 than runs end, and cancelling each of them would show nothing until the drag ends."""
+_KERNEL_S = 0.5
+"""After so long a job is tried again that needs a kernel which is being compiled."""
 
 _log = logging.getLogger("schuler.worker")
 
@@ -79,7 +82,8 @@ class Worker(Generic[Job]):
     Parameters
     ----------
     work : callable
-        ``work(job, watch)``; polls ``watch.cancelled()``; raises `ElsewhereLost` to be called once more.
+        ``work(job, watch)``; polls ``watch.cancelled()``; raises `ElsewhereLost` to be called once more, and
+        `KernelAwaited` to be called once more in a moment.
     visitor : object, optional
         Whose jobs these are: visitors take turns. By default the worker is a visitor of its own.
     load : callable, optional
@@ -152,9 +156,9 @@ class Worker(Generic[Job]):
         """Message of an item's load to whoever waits for it."""
         return self._load(item).note
 
-    def _stand_in_line(self) -> None:
+    def _stand_in_line(self, after_s: float = 0.0) -> None:
         """Wait for a turn with the job in the slot; a job of the same lane keeps the place it has."""
-        load, due_s = self._load(self._slot[0]), time.monotonic() + self._still_s
+        load, due_s = self._load(self._slot[0]), time.monotonic() + max(self._still_s, after_s)
         if self._ticket is not None:
             if self._still_s == 0.0 and self._ticket.load.lane is load.lane:
                 self._ticket.load = load
@@ -177,10 +181,12 @@ class Worker(Generic[Job]):
                 lambda: self._turns.given_up(ticket),
             )
             watch.asked_s = self._asked_s
+        after_s = 0.0
         try:
             with working_for(self._visitor):
                 self._work(job, watch)
-        except ElsewhereLost:
+        except (ElsewhereLost, KernelAwaited) as reason:
+            after_s = _KERNEL_S if isinstance(reason, KernelAwaited) else 0.0
             with self._changed:
                 if not self._slot and not self._stopped and not watch.stop_asked.is_set():
                     self._slot = [job]
@@ -190,5 +196,5 @@ class Worker(Generic[Job]):
             with self._changed:
                 self._watch = None
                 if self._slot:
-                    self._stand_in_line()
+                    self._stand_in_line(after_s)
                 self._changed.notify_all()

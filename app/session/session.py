@@ -8,6 +8,7 @@ from pathlib import Path
 
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
+from navcore.foundation.kernel_wait import KernelAwaited
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import log_name
@@ -349,6 +350,9 @@ class Session:
         try:
             refuse_too_large(scenario)
             run = run_for(self._name, self._simulate, scenario, progress, watch)
+        except KernelAwaited:
+            self._tell(lambda view: view.run_awaits_kernels())
+            raise
         except Exception as error:
             self._after_run = []
             if isinstance(error, InputError):

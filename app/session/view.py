@@ -15,6 +15,9 @@ class View(Protocol):
     def run_progressed(self, fraction: float, elapsed_s: float) -> None:
         """Show that a run is under way and the picture is an old one."""
 
+    def run_awaits_kernels(self) -> None:
+        """Say that the run begins once its kernels are compiled, and how far that is."""
+
     def run_ended(self) -> None:
         """Show the session's run."""
 

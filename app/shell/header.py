@@ -9,6 +9,7 @@ from navcore.engine.run import ENDINGS, Run
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs import kernels
 from schuler_bench.plots import style
 from schuler_bench.plots.units import duration
 from schuler_bench.session.keeping import NotKept
@@ -29,6 +30,12 @@ _WAITS = "#B26A00"
 """Colour of a state that will not last."""
 # While a picture is old it is dimmed.
 _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
+# Over the frames of the pictures, which are empty before the first run.
+_BEFORE_PICTURES = (
+    '{state}<div id="sb-compiling" style="position:fixed;left:62%;top:30%;transform:translateX(-50%);'
+    "z-index:20;padding:14px 20px;border:1px solid #c9d2da;border-radius:8px;background:#fff;color:#33475b;"
+    'text-align:center;pointer-events:none"><b>{title:html}</b><br>{rest:html}</div>'
+)
 
 
 class HeaderPanel:
@@ -158,6 +165,18 @@ class HeaderPanel:
         if not self._progress.visible:
             self._show_state(Text("Computing"), _still(number), _WAITS, old=True)
             self._show_buttons(progress=True, again=False)
+
+    def show_compiling(self, number: int) -> None:
+        """Say that a run waits for its kernels: in the bar, and over the pictures that are not there yet."""
+        title, rest, compiling = Text("Compiling the kernels, once: about a minute"), "", kernels.compiling()
+        if compiling is not None and compiling.total:
+            done, total = compiling.done, compiling.total
+            rest = Text("{done} of {total}: {kernel}", done=done, total=total, kernel=compiling.name)
+            self._progress.value = round(100.0 * done / total, 1)
+        self._show_state(title, rest, _WAITS, old=number > 0)
+        self._show_buttons(progress=True, again=False)
+        if number == 0:
+            self._state.content = Text(_BEFORE_PICTURES, state=self._state.content, title=title, rest=rest)
 
     def show_stopped(self, number: int) -> None:
         """Say that the pictures are old because the run was stopped."""

@@ -206,6 +206,12 @@ class Page:
             self.header.show_progress(fraction, self.session.run_number)
             self.client.flush()
 
+    def run_awaits_kernels(self) -> None:
+        """Say how far the kernels are; told again and again."""
+        if not self._closed:
+            self.header.show_compiling(self.session.run_number)
+            self.client.flush()
+
     def run_stopped(self) -> None:
         """The user stopped the run."""
         self.header.show_stopped(self.session.run_number)

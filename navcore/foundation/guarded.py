@@ -20,6 +20,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.kernel_wait import Need, when_missing
 
 Result = TypeVar("Result")
 _LARGEST_ANSWER = 512 * 2**20
@@ -185,6 +186,7 @@ def _work(
 ) -> None:
     """Run the function within the limits and send its result, its faults, or what broke."""
     _bound(limits)
+    when_missing(Need.WAIT)
     try:
         sent = pickle.dumps(("result", function(*arguments)), protocol=pickle.HIGHEST_PROTOCOL)
     except InputError as error:

@@ -18,6 +18,7 @@ import re
 import shutil
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -28,9 +29,9 @@ from typing import IO, Any
 from numba.core.caching import FunctionCache, IndexDataCacheFile, _CacheLocator
 from numba.core.codegen import get_host_cpu_features
 
-from navcore.foundation import kernel_files
+from navcore.foundation import kernel_files, kernel_wait
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.kernel_digest import PACKAGE, kernel_digest, source_digest
+from navcore.foundation.kernel_digest import PACKAGE, kernel_digest, number_of_kernels, source_digest
 
 UNUSED_S = 30.0 * 86400.0
 """A folder of kernels that nothing has used for so long is removed, s."""
@@ -42,14 +43,21 @@ PORTABLE = "x86-64-v3" if platform.machine() in ("x86_64", "AMD64") else "generi
 """Processor, as LLVM names it, that the shipped kernels are compiled for."""
 _NEEDED = ("avx2", "bmi2", "fma", "lzcnt", "movbe") if PORTABLE == "x86-64-v3" else ()
 _A_DAY_S = 86400.0
+_forming = threading.Lock()
 _KNOWN = "digests"
 _COMPLETE = "complete"
+_LOCK = "lock"
 _log = logging.getLogger("schuler.kernels")
 
 
 @cache
 def kernel_hash() -> str:
     """Digest that names the machine code; taken from where it was kept when the sources are the same."""
+    with _forming:  # threads that form it side by side would each read some of the sources twice
+        return _kernel_hash()
+
+
+def _kernel_hash() -> str:
     known = source_digest()
     places = [base / _KNOWN / known for base in _bases()]
     for place in places:
@@ -130,16 +138,25 @@ class KernelCache(FunctionCache):
         ------
         InputError
             See `cache_folder`: only now, so that a program without kernels can be imported and say so.
+        KernelAwaited
+            See `navcore.foundation.kernel_wait.wait_once`.
         """
+        while True:
+            if (found := self._found(sig, target_context)) is not None:
+                return found
+            lock = cache_folder() / _LOCK
+            if not kernel_wait.wait_once(lock, self._impl.filename_base):
+                return None
+
+    def _found(self, sig: Any, target_context: Any) -> Any:
         with suppress(OSError):
             if (found := super().load_overload(sig, target_context)) is not None:
                 return found
-        if shipped() is not None:
-            (system, _, _), own = (key := self._index_key(sig, target_context.codegen()))[1], key[2]
-            if (data := self._shipped.load((sig, (system, PORTABLE, ""), own))) is not None:
-                return self._impl.rebuild(target_context, data)
-        cache_folder()
-        return None
+        if shipped() is None:
+            return None
+        key = self._index_key(sig, target_context.codegen())
+        data = self._shipped.load((key[0], (key[1][0], PORTABLE, ""), *key[2:]))
+        return None if data is None else self._impl.rebuild(target_context, data)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the machine code for a signature, on a full disk or a read-only one as long as we run."""
@@ -279,6 +296,20 @@ def ready() -> bool:
     return shipped() is not None or complete()
 
 
+def under_way() -> kernel_wait.Compiling | None:
+    """Return how far another process is that compiles every kernel; None when there is none."""
+    return kernel_wait.under_way(cache_folder() / _LOCK)
+
+
+def note_progress(kernel: str) -> kernel_wait.Compiling:
+    """Let others know how far this process is, which holds the right to compile every kernel."""
+    folder = cache_folder()
+    done = len([*folder.glob("*/*.nbi")])
+    compiling = kernel_wait.Compiling(done, max(done, number_of_kernels()), kernel)
+    kernel_wait.note(folder / _LOCK, compiling)
+    return compiling
+
+
 @contextmanager
 def compiling() -> Iterator[bool]:
     """Hold the right to compile every kernel; the body does so when given True.
@@ -298,7 +329,7 @@ def compiling() -> Iterator[bool]:
     if shutil.disk_usage(folder).free < ROOM_BYTES:
         allowed = f"the disk has no {ROOM_BYTES >> 20} MiB for them: name another folder in SCHULER_CACHE_DIR"
         raise InputError(Fault("kernels", "", None, allowed))
-    with open(folder / "lock", "a") as lock:
+    with open(folder / _LOCK, "a") as lock:
         _lock(lock.fileno())
         if complete():
             yield False

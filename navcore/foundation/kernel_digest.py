@@ -118,6 +118,12 @@ def kernel_texts() -> Iterator[str]:
         waiting += _named(module, statement)
 
 
+@cache
+def number_of_kernels() -> int:
+    """Number of functions that are compiled with all that they inline."""
+    return sum(path.read_bytes().count(b"\n@kernel\n") for path in PACKAGE.rglob("*.py"))
+
+
 def source_digest() -> str:
     """Digest of the sources as they are, wording and layout included; formed in some 10 ms."""
     digest = hashlib.blake2b(_versions(), digest_size=16)

@@ -319,6 +319,19 @@ def test_runs_of_visitors_who_have_left_are_dropped(
     assert [session.run is not None for session in every] == [True, False, False, False, True, True]
 
 
+def test_large_runs_of_visitors_who_have_left_are_dropped_before_their_number(
+    visitors: Sessions, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sessions, "MOST_IDLE_BYTES", 100_000)
+    monkeypatch.setattr(sessions, "bytes_of", lambda run: 40_000)
+    every = [visitors.get(f"visitor-{number}") for number in range(5)]
+    for session in every:
+        session.run = answer(PRESET)
+    every[0]._views.append(Watcher())
+    visitors.forget_idle()
+    assert [session.run is not None for session in every] == [True, False, False, True, True]
+
+
 def test_uploads_go_with_their_session(visitors: Sessions, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sessions, "MOST_SESSIONS", 1)
     uploads = visitors.get("old").uploads.folder

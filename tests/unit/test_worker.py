@@ -6,6 +6,7 @@ import threading
 import pytest
 
 from navcore.foundation.errors import InputError
+from navcore.foundation.kernel_wait import KernelAwaited
 from schuler_bench.cli import main
 from schuler_bench.jobs import worker
 from schuler_bench.jobs.cluster import check_address
@@ -187,3 +188,35 @@ def test_jobs_elsewhere_take_no_core_and_no_memory_of_this_machine() -> None:
     gate.set()
     for one in away:
         assert one.wait_idle(10.0)
+
+
+def test_a_job_whose_kernel_is_being_compiled_is_tried_again_until_it_is_there() -> None:
+    tried: list[str] = []
+
+    def work(job: str, watch: Watch) -> None:
+        tried.append(job)
+        if len(tried) < 3:
+            raise KernelAwaited("advance")
+
+    worker = Worker(work, turns=Scheduler(1, 100.0))
+    worker.submit("job")
+    assert worker.wait_idle(10.0)
+    assert tried == ["job"] * 3
+    worker.stop()
+
+
+def test_a_job_that_waits_for_its_kernel_can_be_cancelled() -> None:
+    tried: list[str] = []
+    begun = threading.Event()
+
+    def work(job: str, watch: Watch) -> None:
+        tried.append(job)
+        begun.set()
+        raise KernelAwaited("advance")
+
+    worker = Worker(work, turns=Scheduler(1, 100.0))
+    worker.submit("job")
+    assert begun.wait(10.0)
+    worker.cancel()
+    assert worker.wait_idle(10.0) and not worker.busy
+    worker.stop()
