@@ -46,7 +46,7 @@ def as_before() -> Iterator[None]:
     yield
     kernel_wait.when_missing(Need.COMPILE)
     kernel_wait.expect(False)
-    kernels._state.compiling = None
+    kernels._state.compiling = kernels._state.process = None
 
 
 def test_progress_is_read_while_the_other_process_lives(lock: Path, compiler: subprocess.Popen[str]) -> None:
@@ -101,6 +101,7 @@ def test_a_server_whose_compiler_ends_early_says_so_and_goes_on(
     told: list[str] = []
     with subprocess.Popen([sys.executable, "-c", "raise SystemExit(1)"]) as ended:
         ended.wait()
+        kernels._state.process = ended
         kernels._follow(ended, told.append)
     assert told == [kernels.COMPILING] and "could not be compiled" in caplog.text
     assert kernels.words() == "" and not wait_once(tmp_path / "lock", "advance")
