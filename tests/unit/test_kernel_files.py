@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -226,6 +227,7 @@ def test_what_cannot_be_kept_is_compiled_all_the_same(
     monkeypatch.setattr(kernel_cache.FunctionCache, "load_overload", refuse)
     kernel_cache._say_not_kept.cache_clear()
     cache = object.__new__(kernel_cache.KernelCache)
+    cache._impl = SimpleNamespace(filename_base="kernel")
     assert cache.load_overload((), None) is None
     cache.save_overload((), None)
     cache.save_overload((), None)
