@@ -21,7 +21,11 @@ from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.roots import sorted_roots
 
 EARTH_MODE, SCHULER_MODE, NETWORK_MODE = "24 h", "Schuler-Foucault", "network"
+CANCELLED_MODE = "cancelled network"
+"""Of a pole of the network on which one of its zeros lies: H(s) does not show it."""
 _DAY = 86400.0
+_SAME = 1e-6
+"""Distance of a zero from a pole, relative to their size, at which they cancel."""
 _STANDS = 1e-7
 """Growth over omega_s that counts as none: rounding moves a mode of two equal eigenvalues by so much."""
 
@@ -33,7 +37,7 @@ class Mode:
     Attributes
     ----------
     name : str
-        "24 h", "Schuler-Foucault" or "network".
+        "24 h", "Schuler-Foucault", "network" or "cancelled network".
     eigenvalue : complex
         rad/s; of a pair, the one above the real axis.
     """
@@ -171,7 +175,7 @@ def _named(
     targets, names = _uncoupled(network, lat, azimuth)
     target_of = _nearest(values, targets)
     modes: list[Mode] = []
-    for name in (EARTH_MODE, SCHULER_MODE, NETWORK_MODE):
+    for name in (EARTH_MODE, SCHULER_MODE, NETWORK_MODE, CANCELLED_MODE):
         roots = [v for v, i in zip(values, target_of, strict=True) if v.imag >= 0.0 and names[i] == name]
         modes += [Mode(name, complex(root)) for root in sorted_roots(np.array(roots)) * network.omega_s]
     return modes
@@ -186,7 +190,12 @@ def _uncoupled(
     """
     rate = 1j * EARTH_RATE / network.omega_s
     poles = closed_loop_poles(network)
-    main = _least_damped(poles)
+    hidden = _cancelled(poles, network)
+    main = _least_damped(poles, hidden)
+    own = [
+        CANCELLED_MODE if gone else SCHULER_MODE if least else NETWORK_MODE
+        for gone, least in zip(hidden, main, strict=True)
+    ]
     if isinstance(azimuth, AzimuthGains):
         pair = np.roots([1.0, azimuth.k1 / network.omega_s, 0.5 * (azimuth.k2 + 1.0)])
         loop = np.tile(pair, 2)
@@ -194,21 +203,32 @@ def _uncoupled(
         return targets, [
             EARTH_MODE,
             *[NETWORK_MODE] * 4,
-            *[SCHULER_MODE if own else NETWORK_MODE for own in main],
+            *own,
             NETWORK_MODE,
         ]
     slow = np.array([rate, -rate]) if azimuth is None else abs(rate) * closed_loop_poles(azimuth)
-    earth = [EARTH_MODE if own else NETWORK_MODE for own in _least_damped(slow)]
+    earth = [EARTH_MODE if least else NETWORK_MODE for least in _least_damped(slow)]
     split = np.where(main, rate * math.sin(lat), 0.0)
-    names = [SCHULER_MODE if own else NETWORK_MODE for own in main]
     targets = np.concatenate([slow, poles + split, poles - split, [0.0]])
-    return targets, [*earth, *names, *names, NETWORK_MODE]
+    return targets, [*earth, *own, *own, NETWORK_MODE]
 
 
-def _least_damped(poles: ComplexArray) -> np.ndarray:
-    """Mark the least damped pair, shape (n,)."""
+def _cancelled(poles: ComplexArray, network: LinearNetwork) -> np.ndarray:
+    """Mark the closed-loop poles that are poles of the network on a zero of it, shape (n,)."""
+
+    def on(roots: np.ndarray) -> np.ndarray:
+        apart = np.abs(poles[:, None] - roots) / (np.abs(poles[:, None]) + np.abs(roots) + 1e-300)
+        return (apart < _SAME).any(axis=1)
+
+    return np.logical_and(on(np.roots(network.den_p)), on(np.roots(network.loop_num_p)))
+
+
+def _least_damped(poles: ComplexArray, hidden: np.ndarray | None = None) -> np.ndarray:
+    """Mark the least damped pair, shape (n,); one that is hidden, shape (n,), is passed over."""
     size = np.abs(poles)
     damping = np.where(size > _STANDS, -poles.real / np.maximum(size, _STANDS), np.inf)
+    if hidden is not None and not hidden.all():
+        damping = np.where(hidden, np.inf, damping)
     least = poles[np.argmin(damping)]
     main = np.zeros(len(poles), dtype=bool)
     for pole in (least, np.conj(least)):
@@ -237,6 +257,8 @@ def _warnings(growing: list[Mode], network: LinearNetwork, lat: float) -> list[s
         if mode.name == EARTH_MODE and math.isfinite(network.h_slope):
             slope = float(f"{network.h_slope:.4g}")
             reason = f" (H(0) = {network.h0:.3g}, H'(0) = {slope:+g} s)"
+        elif mode.name == CANCELLED_MODE:
+            reason = Text(" (a zero of H(s) lies on this pole of the network: H(s) does not show it)")
         texts.append(
             Text(
                 "whole system at latitude {lat:.4g}°: the {name} mode grows, e-folding time {growth}{reason}",

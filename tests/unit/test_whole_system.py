@@ -8,6 +8,7 @@ import pytest
 from navcore.analysis.held_log import held_log, period_map
 from navcore.analysis.whole_matrix import feedback_gains, inputs_of_law, system_matrix
 from navcore.analysis.whole_system import (
+    CANCELLED_MODE,
     EARTH_MODE,
     SCHULER_MODE,
     _nearest,
@@ -96,6 +97,20 @@ def test_the_gains_are_read_back_from_the_network():
     assert feedback_gains(parse_network('id = "compass", k1 = 0.1, k2 = -1.0, k3 = 1.0').transfer(OMEGA_S))[
         1
     ] == pytest.approx(-1.0)
+
+
+@pytest.mark.parametrize("pole", [0.5, -0.3])
+def test_a_pole_on_a_zero_is_named_as_cancelled(pole):
+    plain = network('id = "custom", zeros = [-0.0008], poles = [-0.02]')
+    at = pole * OMEGA_S
+    hidden = network(f'id = "custom", zeros = [{at!r}, -0.0008], poles = [{at!r}, -0.02]')
+    without, found = whole_system(plain, 0.7), whole_system(hidden, 0.7)
+    assert [mode.eigenvalue.real for mode in found.named(CANCELLED_MODE)] == pytest.approx([at, at], rel=1e-6)
+    rest = [mode for mode in found.modes if mode.name != CANCELLED_MODE]
+    assert [mode.name for mode in rest] == [mode.name for mode in without.modes]
+    told = [text for text in found.warnings if "cancelled network mode grows" in text]
+    assert bool(told) == (pole > 0.0) and not any("Foucault" in text for text in found.warnings)
+    assert without.named(CANCELLED_MODE) == ()
 
 
 def test_north_and_south_are_the_same():

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from navcore.analysis.whole_system import (
+    CANCELLED_MODE,
     EARTH_MODE,
     NETWORK_MODE,
     SCHULER_MODE,
@@ -22,7 +23,12 @@ from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
 LATITUDES = np.linspace(0.0, 85.0, 18)
 """Of the curve, deg; north and south are alike."""
 _DAY = 86400.0
-_SYMBOLS = {EARTH_MODE: "diamond", SCHULER_MODE: "x-thin", NETWORK_MODE: "circle-open"}
+_SYMBOLS = {
+    EARTH_MODE: "diamond",
+    SCHULER_MODE: "x-thin",
+    NETWORK_MODE: "circle-open",
+    CANCELLED_MODE: "circle-x-open",
+}
 _GAP = 0.11
 
 
