@@ -22,6 +22,17 @@ FONT = fontpkg_arimo.ROOT / "files" / "Arimo[wght].ttf"
 _FACE = "@font-face{{font-family:{family};font-weight:400 700;font-display:block;src:url({address})}}"
 _JAVASCRIPT = "text/javascript; charset=utf-8"
 _FAST = 5
+_ROOT = '<div id="root"></div>'
+_BLANK = (
+    "<style>#sb-blank{visibility:hidden;animation:sb-blank 0s 8s forwards;max-width:36em;margin:2em auto;"
+    "padding:0 1em;font:15px/1.5 sans-serif;color:#243b53}@keyframes sb-blank{to{visibility:visible}}"
+    "#root:not(:empty)~#sb-blank{display:none}</style>"
+    '<div id="sb-blank" role="note"><b>Schuler Bench has not started yet.</b> If this stays in a frame, the '
+    "page around it shows it with <code>sandbox</code> and without <code>allow-same-origin</code>: then no "
+    "program of this server may run in it. Add <code>allow-same-origin</code>, or open it "
+    '<a href="" target="_blank" rel="noopener">in a window of its own</a>.</div>'
+)
+"""Seen where no script of ours may run, and so made of style alone: a frame would stay blank."""
 
 
 @dataclass(frozen=True)
@@ -107,5 +118,8 @@ def build_page(scripts: Sequence[Path], later: Sequence[Path], title: str) -> Pa
         f'<script type="module" src="{address("start.js", _START.read_bytes())}"></script>',
         *(f'<link rel="preload" as="script" data-later href="{other}">' for other in others),
     ]
+    if after.count(_ROOT) != 1:
+        raise ValueError("viser's page has changed: no root to say beside it what is wrong")
+    after = after.replace(_ROOT, _ROOT + _BLANK)
     html = f"{before}<title>{title}</title>{''.join(tags)}{after}"
     return Page(html=File("text/html; charset=utf-8", html.encode()), files=files)

@@ -15,12 +15,21 @@
     return known().find((name) => name.toLowerCase().split("-")[0] === first);
   }
 
+  // A frame without an origin has no cookies: nothing is kept there.
   function kept() {
-    return document.cookie.split("; ").find((part) => part.startsWith(`${COOKIE}=`))?.slice(COOKIE.length + 1);
+    try {
+      return document.cookie.split("; ").find((part) => part.startsWith(`${COOKIE}=`))?.slice(COOKIE.length + 1);
+    } catch {
+      return undefined;
+    }
   }
 
   function keep(language, forGood) {
-    document.cookie = `${COOKIE}=${language}; path=/; SameSite=Lax${forGood ? `; max-age=${YEAR_S}` : ""}`;
+    try {
+      document.cookie = `${COOKIE}=${language}; path=/; SameSite=Lax${forGood ? `; max-age=${YEAR_S}` : ""}`;
+    } catch {
+      // as said above
+    }
   }
 
   const asked = ours(new URL(location.href).searchParams.get("lang") ?? "");

@@ -93,14 +93,16 @@
 
   function ring(figure, panel) {
     const made = window.schuler.element("button", "", { type: "button", class: "sb-handle" });
-    const tip = window.schuler.element("span", "", { class: "sb-handle-tip", "aria-hidden": "true" });
-    const numbers = document.createTextNode("");
-    tip.append(numbers, window.schuler.element("sub", "s"));
+    // Elements, not texts: a browser that translates puts elements of its own in the place of texts.
+    const tip = window.schuler.element("span", "", { class: "sb-handle-tip", "aria-hidden": "true", translate: "no" });
+    const numbers = window.schuler.element("span", "");
+    const index = window.schuler.element("sub", "s");
+    tip.append(numbers, index);
     made.append(tip);
     made.addEventListener("pointerdown", (event) => press(event, figure, panel, made));
     made.addEventListener("keydown", (event) => step(event, figure, panel));
-    const scale = window.schuler.element("div", "", { class: "sb-handle-scale", "aria-hidden": "true" });
-    return { made, numbers, scale };
+    const scale = window.schuler.element("div", "", { class: "sb-handle-scale", "aria-hidden": "true", translate: "no" });
+    return { made, numbers, index, scale };
   }
 
   // While the handle of a Bode plot is dragged: the damping ratios along its way up and down.
@@ -148,7 +150,7 @@
     while (state.rings.length < count) state.rings.push(ring(figure, state.rings.length));
     if (there === undefined) return;
     const pair = pairOf(figure);
-    for (const [panel, { made, numbers, scale }] of state.rings.entries()) {
+    for (const [panel, { made, numbers, index, scale }] of state.rings.entries()) {
       if (made.parentElement !== frame) frame.append(made);
       const [across, up] = axes(figure, there.panels[panel]);
       const handle = inPanel(figure, panel);
@@ -164,8 +166,8 @@
       made.classList.toggle("sb-left", left > 0.7 * across._length);
       const schuler = there.unit === "ωₛ";
       const said = `ζ ${short(pair[0])}  ω ${short(pair[1])} ${schuler ? "ω" : there.unit}`;
-      if (numbers.data !== said) numbers.data = said;
-      numbers.nextSibling.hidden = !schuler;
+      if (numbers.textContent !== said) numbers.textContent = said;
+      index.hidden = !schuler;
       name(made, pair, there);
     }
   }

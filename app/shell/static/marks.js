@@ -57,6 +57,13 @@
     ];
   }
 
+  // Our scripts know tabs and the controls through which they report by their texts: a browser that translates the page
+  // leaves these alone.
+  function keepWords() {
+    for (const tab of document.querySelectorAll('[role="tab"]:not([translate])')) tab.setAttribute("translate", "no");
+    for (const block of document.querySelectorAll('[data-sb-kind="hidden"]:not([translate])')) block.setAttribute("translate", "no");
+  }
+
   function mark() {
     for (const [name, wanted, word] of found()) {
       for (const element of document.querySelectorAll(`[${name}]`)) {
@@ -66,6 +73,7 @@
         if (element.getAttribute(name) !== word(value)) element.setAttribute(name, word(value));
       }
     }
+    keepWords();
   }
 
   const drawn = (node) =>
