@@ -218,7 +218,7 @@ def _cancelled(poles: ComplexArray, network: LinearNetwork) -> np.ndarray:
 
     def on(roots: np.ndarray) -> np.ndarray:
         apart = np.abs(poles[:, None] - roots) / (np.abs(poles[:, None]) + np.abs(roots) + 1e-300)
-        return (apart < _SAME).any(axis=1)
+        return np.asarray((apart < _SAME).any(axis=1))
 
     return np.logical_and(on(np.roots(network.den_p)), on(np.roots(network.loop_num_p)))
 
