@@ -34,6 +34,7 @@ help:
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
 	@echo 'make soak     30 visitors for 30 minutes on one server, then floods: one table (CLIENTS=, BROWSERS=, MINUTES=)'
 	@echo '              HOURS=12: ten visitors who come and go on a server that is restarted at random'
+	@echo '              HOURS=12 PIECE=60: an hour of it; the next call goes on'
 	@echo 'make serving  run what docs/serving.md names, and write its table from that and from the last soak'
 	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices (SAMPLE=, SEED=)'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
@@ -76,7 +77,8 @@ paint: setup $(STAMPS)/test
 # CLIENTS=30 BROWSERS=3 MINUTES=30: so many visitors, so many of them browsers, for so long.
 # HOURS=12: a server left alone for so long, ended and started at random, in place of the lecture.
 soak: setup $(STAMPS)/test
-	@$(if $(HOURS),$(BIN)/python -m tools.serving.unattended --hours $(HOURS) --json build/unattended.json,\
+	@$(if $(HOURS),$(BIN)/python -m tools.serving.unattended --hours $(HOURS) $(if $(PIECE),--piece $(PIECE)) \
+	  --json build/unattended.json,\
 	  $(BIN)/python -m tools.serving.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
 	  --minutes $(or $(MINUTES),30) --json build/soak.json)
 

@@ -327,6 +327,16 @@ def studies(port: int, number: int, ended: Event) -> None:
             visitor.rest(12.0)
 
 
+def left_behind(port: int, number: int, ended: Event) -> None:
+    """Visitors who begin a study or a verification and leave, one after the other; nobody comes back."""
+    for step in itertools.count():
+        with opened(port, number + step) as visitor:
+            visitor.ask(("study", "verify")[step % 2])
+            visitor.rest(1.0)
+        if ended.wait(1.0):
+            return
+
+
 def long_under_way(port: int) -> float:
     """Long runs that wait or run, as ``/metrics`` tells."""
     with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=30.0) as answer:

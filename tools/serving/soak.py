@@ -34,6 +34,7 @@ from tools.serving.load import (
     dragging,
     flood_of_a_slider,
     flood_of_commands,
+    left_behind,
     long_runs,
     long_under_way,
     pausing,
@@ -203,6 +204,7 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
         ("command_flood", "one who floods commands", flood_of_commands, 1, 8.0),
         ("searches", "four who search in loops", searches, 1, 15.0),
         ("studies", "one who runs studies", studies, 1, 8.0),
+        ("left_behind", "visitors who begin a search and leave", left_behind, 1, 15.0),
     ]
     if arguments.long:
         processes, settle_s = arguments.long // _LONG_PER_PROCESS, 8.0 + 0.25 * arguments.long
