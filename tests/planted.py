@@ -7,6 +7,7 @@ or clock does, while its header says what it did before.
 
 from __future__ import annotations
 
+import gzip
 import math
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
@@ -22,11 +23,12 @@ from navcore.checks.file import check_file
 from navcore.checks.imu import IMU_CHECKER
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.recording import read_recording
 from navcore.motion.track import TrackMotion
 from navcore.sensors.recorded import recording_notices
 from navcore.sensors.reference import Reference
 from tests.nmea import START as NMEA_START
-from tests.nmea import gga, rmc, stamped, write
+from tests.nmea import gga, rmc, sentence, stamped, write
 
 Columns = dict[str, np.ndarray]
 LARGE = 0.05
@@ -118,6 +120,14 @@ def _later(seconds: float) -> Callable[[np.ndarray], np.ndarray]:
     return lambda values: values + seconds
 
 
+_EARLY = 100
+
+
+def _early(values: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Other numbers for the first rows."""
+    return np.where(np.arange(values.size) < _EARLY, others, values)
+
+
 _SPEEDS_KN, _SPEEDS_MPS = ("sog", "speed", "starboard"), ("ve", "vn")
 _ANGLES, _PLACES = ("cog", "heading"), ("lat", "lon")
 _RATES, _FORCES = ("gx", "gy", "gz"), ("fx", "fy", "fz")
@@ -142,6 +152,17 @@ SHIP_FAULTS = (
        ("GPS time", -315964800.0), ("NTP time", 2208988800.0))),
     Fault("minutes as seconds", ("time",), lambda values: _BEGIN + (values - _BEGIN) / 60.0),
     Fault("ms as seconds", ("time",), lambda values: _BEGIN + (values - _BEGIN) * 1e3),
+    Fault("a clock that was set late", ("time",), lambda v: _early(v, 10.0 + np.arange(v.size))),
+    Fault("a clock of 2000 that was set late", ("time",), lambda values: _early(values, values - 7.6e8)),
+    Fault("1024 weeks at first", ("time",), lambda values: _early(values, values - 1024 * _WEEK_S)),
+    Fault("leap seconds at first", ("time",), lambda values: _early(values, values + 18.0)),
+    Fault("an hour at first", ("time",), lambda values: _early(values, values + 3600.0)),
+    Fault("an hour less at first", ("time",), lambda values: _early(values, values - 3600.0)),
+    Fault("seven minutes at first", ("time",), lambda values: _early(values, values + 420.0)),
+    Fault("days as seconds", ("time",), lambda values: values / 86400.0 + 25569.0),
+    Fault("rounded days as seconds", ("time",), lambda values: np.round(values / 86400.0 + 25569.0, 4)),
+    Fault("LabVIEW time", ("time",), _later(2082844800.0)),
+    Fault("whole minutes", ("time",), lambda values: np.floor(values / 60.0) * 60.0),
 )  # fmt: skip
 IMU_FAULTS = (
     *(Fault(f"{unit} as rad/s", _RATES, _times(size)) for unit, size in
@@ -225,6 +246,70 @@ FORMATS: dict[str, tuple[Callable[[Path, Columns, Columns], list[Path]], frozens
 }
 """Writer, and the columns that the format's file does not hold."""
 IMU = "IMU"
+
+
+def _lines(change: Callable[[str], str]) -> Callable[[bytes], bytes]:
+    """Change of every line."""
+    return lambda content: "".join(f"{change(line)}\n" for line in content.decode().splitlines()).encode()
+
+
+def _bodies(old: str, new: str, every: int = 1) -> Callable[[bytes], bytes]:
+    """Change of the body of every so many sentences, with a right checksum."""
+    count = 0
+
+    def changed(line: str) -> str:
+        nonlocal count
+        before, _, behind = line.partition("$")
+        body = behind.partition("*")[0]
+        count += old in body
+        return before + sentence(body.replace(old, new)) if old in body and count % every == 0 else line
+
+    return _lines(changed)
+
+
+def _outage(content: bytes) -> bytes:
+    lines = content.decode().splitlines()
+    return (
+        "\n".join(line for k, line in enumerate(lines) if not 600 < k < 900 or "HDT" in line).encode() + b"\n"
+    )
+
+
+FILE_FAULTS: dict[str, tuple[str, str, Callable[[bytes], bytes]]] = {
+    "every line twice": ("NMEA", "track", _lines(lambda line: f"{line}\n{line}")),
+    "every row twice": ("CSV", "track", _lines(lambda line: line if line[:1] == "u" else f"{line}\n{line}")),
+    "the file behind itself": ("CSV", "log", lambda content: content + content.partition(b"\n")[2]),
+    "NUL before each sentence": ("NMEA", "track", lambda content: content.replace(b"$", b"\0$")),
+    "simulated": ("NMEA", "track", _bodies(",,,A", ",,,S")),
+    "estimated": ("NMEA", "track", _bodies(",1,08,", ",6,08,")),
+    "not valid": ("NMEA", "track", _bodies(",,,A", ",,,N")),
+    "a log that has lost the water": ("NMEA", "log", _bodies(",A,", ",V,")),
+    "a log that now and then has lost the water": ("NMEA", "log", _bodies(",A,", ",V,", 3)),
+    "an outage of the satellites": ("NMEA", "track", _outage),
+    "no header": ("CSV", "track", lambda content: content.partition(b"\n")[2]),
+    "decimal commas": ("CSV", "log", lambda content: content.replace(b",", b";").replace(b".", b",")),
+    "gzip": ("CSV", "log", lambda content: gzip.compress(content)),
+}
+"""Format, part, and what is done to its whole file."""
+
+
+def told_of_file(name: str, folder: Path) -> tuple[list[str], bool]:
+    """All that is said of a file with such a fault, and whether it is read as without the fault."""
+    form, part, change = FILE_FAULTS[name]
+    track, log = ship()
+    good = FORMATS[form][0](folder, track, log)[part == "log"]
+    before = read_recording(good).quantities()
+    good.write_bytes(change(good.read_bytes()))
+    report = check_file(good, [IMU_CHECKER])
+    words = [*report.warnings, *map(str, report.faults)]
+    if not report.ok:
+        return words, False
+    after = read_recording(good).quantities()
+    same = before.keys() == after.keys() and all(
+        np.array_equal(before[k].time_s, after[k].time_s)
+        and np.array_equal(before[k].values, after[k].values, equal_nan=True)
+        for k in before
+    )
+    return words, same
 
 
 class Case(NamedTuple):

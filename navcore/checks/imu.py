@@ -21,9 +21,11 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.io.column_map import ColumnMap, read_map
+from navcore.io.column_names import known_columns
 from navcore.io.containers.opening import is_container, open_container
 from navcore.io.imu_table import is_imu_names, is_imu_table
 from navcore.io.source import require_file
+from navcore.io.table_layout import layout
 from navcore.sensors.recorded_imu import ImuRecord, is_psins, read_imu, upward_axis
 
 _GRAVITY = 9.76, 9.84
@@ -42,9 +44,12 @@ def recognises(path: Path, head: bytes) -> bool:
 
 
 def _numbers_below(text: str) -> bool:
-    """Whether numbers alone follow the comments: other tables begin with ``%`` too, names or dates below."""
+    """Whether numbers alone follow the comments and none names them: other tables begin so too."""
+    _, _, header = layout(text)
     lines = (line.strip() for line in text.split("\n"))
     words = next((line for line in lines if line and not line.startswith("%")), "").partition("%")[0].split()
+    if len(header) >= len(words) - 1 and {"lat", "lon"} <= known_columns(header).keys():
+        return False
     try:
         return all(isinstance(float(word), float) for word in words)
     except ValueError:

@@ -17,12 +17,12 @@ from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC,
 from navcore.io.columns import MOST_CELLS, MOST_COLUMNS
 from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
 from navcore.io.containers.opening import is_container, open_container
-from navcore.io.csv import layout
 from navcore.io.imu_columns import AXES, DIMENSIONS, imu_columns
 from navcore.io.imu_table import imu_layout, is_imu_names, is_imu_table
 from navcore.io.recording import NO_TABLE, takes_map
 from navcore.io.rows import split_line
 from navcore.io.source import read_text, require_file
+from navcore.io.table_layout import layout
 
 MOST_ROWS = 3
 """Rows that are shown."""

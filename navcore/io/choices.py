@@ -76,6 +76,42 @@ def _compared(measure: _Measure, quantity: str, taken: Source, other: Source) ->
     return text, plainly
 
 
+_OF_STEMS = {
+    "lat": "position", "lon": "position", "height": "height", "heading": "heading", "cog": "heading",
+    "pitch": "attitude", "roll": "attitude", "speed": "water", "speed_starboard": "water", "ground": "ground",
+    "ground_starboard": "ground", "sog": "velocity", "ve": "velocity", "vn": "velocity",
+}  # fmt: skip
+
+
+def column_choice(stem: str, taken: str, other: str, off: np.ndarray) -> tuple[str, bool]:
+    """Say by how much a column differs from the one that is taken, and whether it is more than it should.
+
+    Parameters
+    ----------
+    stem : str
+        What both hold.
+    taken, other : str
+        Their names.
+    off : ndarray, shape (n,)
+        Difference, SI.
+    """
+    measure = _MEASURES[_OF_STEMS[stem]]
+    if measure.unit == "°":
+        off = (off + np.pi) % (2.0 * np.pi) - np.pi
+    elif stem in ("lat", "lon"):
+        off = off * WGS84.radii(0.0)[1]
+    size = float(np.median(np.abs(off)))
+    text = Text(
+        "{quantity}: column {taken} is taken, {other} is not used: they differ by {size:.3g} {unit} (median)",
+        quantity=measure.name,
+        taken=taken,
+        other=other,
+        size=size / measure.size,
+        unit=measure.unit,
+    )
+    return text, size > measure.most * measure.size
+
+
 def difference(quantity: str, taken: Source, other: Source) -> float | None:
     """Median size of the difference of two sources, SI; None where they share too little time."""
     (_, time_s, values), (_, other_s, others) = taken, other

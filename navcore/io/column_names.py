@@ -5,7 +5,7 @@ A name is read without regard to case, spaces and signs. A unit may stand behind
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from navcore.io.written_units import UNITS, unit_of, without_brackets, written
@@ -209,6 +209,35 @@ def names_unit(column: Column) -> bool:
     last = plain_name(bare).rpartition("_")[2]
     dimension = QUANTITIES[column.stem].dimension
     return bool(written(texts, dimension).unit or unit_of(last, dimension))
+
+
+def other_columns(names: Sequence[str], used: Mapping[str, Column]) -> list[Column]:
+    """Columns whose quantity is read from another column."""
+    places = {column.index for column in used.values()}
+    meant = (_meaning(index, name)[1] for index, name in enumerate(names) if index not in places)
+    return [
+        column
+        for column in meant
+        if column is not None and column.stem in QUANTITIES and column.stem in used and not column.unknown
+        and not column.misfit
+    ]  # fmt: skip
+
+
+_WEEKS = frozenset("gps_week week gpsweek week_number wn gps_wn".split())
+_SECONDS_OF_WEEK = frozenset(
+    "gps_tow tow gps_sow sow seconds_of_week time_of_week gps_seconds gps_sec gps_s".split()
+)
+
+
+def week_columns(names: Sequence[str]) -> list[int]:
+    """Places of the GPS week and its seconds; empty where one is missing or another time is there."""
+    if {UTC, UNIX} & known_columns(names).keys():
+        return []
+    plain = [plain_name(without_brackets(name)[0]) for name in names]
+    found = [
+        next((i for i, name in enumerate(plain) if name in known), -1) for known in (_WEEKS, _SECONDS_OF_WEEK)
+    ]
+    return [] if -1 in found else found
 
 
 def plain_name(name: str) -> str:

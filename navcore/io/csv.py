@@ -5,6 +5,7 @@ The standard library's reader and numpy are enough, name the row of a bad cell, 
 
 import csv
 import io
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,8 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.cells import is_empty, numbers, pointed, times, uses_decimal_comma
-from navcore.io.column_map import ColumnMap
+from navcore.io.choices import column_choice
+from navcore.io.column_map import GPS_WEEK, ColumnMap, TimeMap
 from navcore.io.column_names import (
     CLOCK,
     DATE,
@@ -24,12 +26,12 @@ from navcore.io.column_names import (
     UTC,
     Column,
     known_columns,
-    plain_name,
+    other_columns,
+    week_columns,
 )
 from navcore.io.columns import (
     MOST_CELLS,
     MOST_COLUMNS,
-    Table,
     column_warnings,
     limited,
     pair_faults,
@@ -44,25 +46,23 @@ from navcore.io.mapped_times import MappedClock
 from navcore.io.rows import Rows, split_line
 from navcore.io.series import LeftOut, Recording
 from navcore.io.source import read_text
+from navcore.io.table_flags import flag_columns, heed
+from navcore.io.table_layout import COMMENTS, head_of_text, holds_number, is_row, is_units, layout_of
+from navcore.io.table_times import Table
 from navcore.io.times.counts import GPS_EPOCH_S, gps_to_unix
-from navcore.io.written_units import UNITS, unit_of
 
-_COMMENTS = ("#", "%", "//")
-_SEPARATORS = ",;\t|"
-_HEAD_BYTES = 65536
-_HEAD_LINES = 60
-"""A header stands within so many lines; before it may stand what a logger says about the cruise."""
+_WEEK_AND_SECONDS = re.compile(r"\s*\d{1,4}(?:\.0*)? +\d{1,6}(?:\.\d*)?\s*")
 
 
 def recognises(candidate: Candidate) -> bool:
     """Whether a header names a known column, or the lines look like a table of numbers."""
-    head = _head(candidate.text)
-    separator, header_line, header = _layout(head)
+    head = head_of_text(candidate.text)
+    separator, header_line, header = layout_of(head)
     if known_columns(header[:MOST_COLUMNS]):
         return True
     rows = head[head.index(header_line) + 1 :] if header_line in head else []
-    following = [split_line(line, separator) for line in rows if not line.startswith(_COMMENTS)][:5]
-    alike = [row for row in following if len(row) == len(header) and _holds_number(row, separator)]
+    following = [split_line(line, separator) for line in rows if not line.startswith(COMMENTS)][:5]
+    alike = [row for row in following if len(row) == len(header) and holds_number(row, separator)]
     return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
 
@@ -88,90 +88,11 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
     return table_recording(replace(table, warnings=warnings))
 
 
-def _head(text: str) -> list[str]:
-    return [line for line in text[:_HEAD_BYTES].splitlines() if line.strip()][:_HEAD_LINES]
-
-
-def _separator(line: str) -> str:
-    best = max(_SEPARATORS, key=line.count)
-    return best if line.count(best) else " "
-
-
-def _layout(head: list[str]) -> tuple[str, str, list[str]]:
-    """Separator, header line and header cells.
-
-    The header is the first line that names a time and a quantity, be it a comment; else the line before the
-    first row of numbers, as long as the row; else the first line that is no comment.
-    """
-    plain = next((line for line in head if not line.startswith(_COMMENTS)), "")
-    for line in head:
-        bare = line.lstrip("#%/ ") if line.startswith(_COMMENTS) else line
-        separator = _separator(bare)
-        cells = split_line(bare, separator)
-        known = known_columns(cells[:MOST_COLUMNS])
-        if known.keys() & QUANTITIES.keys() and {UTC, UNIX, SECONDS, CLOCK} & known.keys():
-            return separator, line, cells
-    above = _above_the_rows(head)
-    if above is not None:
-        return above
-    return _separator(plain), plain, split_line(plain, _separator(plain))
-
-
-def _above_the_rows(head: list[str]) -> tuple[str, str, list[str]] | None:
-    """Separator, line and cells of the line before the first row; None where there is none.
-
-    Of two lines that may be it, the lower one gives the units of the upper one.
-    """
-    for at, line in enumerate(head):
-        separator = _separator(line)
-        cells = split_line(line, separator)
-        below = [split_line(one, separator) for one in head[at + 1 : at + 2]]
-        alone = any(len(one) != len(cells) or not _is_row(one, separator) for one in below)
-        if line.startswith(_COMMENTS) or alone or not _is_row(cells, separator):
-            continue
-        found: list[tuple[str, str, list[str]]] = []
-        for above in reversed(head[max(0, at - 2) : at]):
-            names = split_line(above.lstrip("#%/ "), separator)
-            if len(names) != len(cells) or _is_row(names, separator):
-                break
-            found.append((separator, above, names))
-        units = (
-            len(found) > 1
-            and _is_units(found[0][2])
-            and not known_columns(found[0][2]).keys() & QUANTITIES.keys()
-        )
-        return found[1] if units else found[0] if found else None
-    return None
-
-
-def _is_row(cells: list[str], separator: str) -> bool:
-    """Whether at least half of two cells or more are numbers."""
-    given = [cell if separator == "," else cell.replace(",", ".") for cell in cells if cell.strip()]
-    return len(cells) > 1 and 2 * sum(map(_is_number, given)) >= max(len(given), 1) and bool(given)
-
-
-def layout(text: str) -> tuple[str, str, list[str]]:
-    """Separator, header line and header cells of a text."""
-    return _layout(_head(text))
-
-
-def _holds_number(row: list[str], separator: str) -> bool:
-    """Whether a cell is a number, also with a decimal comma."""
-    return any(_is_number(cell if separator == "," else cell.replace(",", ".")) for cell in row)
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
 def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
+    named: list[str] = []
     if column_map is None:
-        separator, header_line, header = _layout(_head(text))
-        if _is_row(header, separator) and not known_columns(header[:MOST_COLUMNS]):
+        separator, header_line, header = layout_of(head_of_text(text))
+        if is_row(header, separator) and not known_columns(header[:MOST_COLUMNS]):
             allowed = Text(
                 "has no line with the names of the columns above its rows (the first one is {first}): put "
                 "one there, "
@@ -179,10 +100,12 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
                 first=header_line[:80],
             )
             raise InputError(Fault(where, "", None, allowed))
-        rows = Rows(header, require_columns(where, header))
-        clock: list[int] = []
+        clock = week_columns(header)
+        named = [UTC if clock[:1] == [index] else name for index, name in enumerate(header)]
+        rows = Rows(header, require_columns(where, named))
+        rows.heeded |= set(clock)
     else:
-        separator, header_line, header = mapped_layout(_head(text), column_map)
+        separator, header_line, header = mapped_layout(head_of_text(text), column_map)
         found = column_map.log_columns(where, header)
         clock = column_map.clocks(where, header)
         rows = Rows(header, {stem: column for stem, (column, _) in found.items()}, decimal=column_map.decimal)
@@ -195,6 +118,9 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
     width, faults = len(header), []
     columns = list(rows.columns.values())
     beside = {index for found in candidates(header, rows.columns).values() for index in found}
+    if column_map is None:
+        rows.flags, rows.others = flag_columns(header), other_columns(header, rows.columns)
+        beside |= rows.flags.keys() | {column.index for column in rows.others}
     for number, row in _after_header(where, text, separator, header_line):
         row = _fitted(row, width, separator, rows.columns)
         if len(row) != width and column_map is not None and column_map.skip_bad_rows:
@@ -204,8 +130,8 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             allowed = Text("has {row} cells, the header {width}", row=len(row), width=width)
             faults.append(Fault(Text("{where}, row {number}", where=where, number=number), "", None, allowed))
             continue
-        if not rows.numbers and column_map is None and _is_units(row):
-            rows.columns = require_columns(where, [f"{n} ({u})" for n, u in zip(header, row, strict=True)])
+        if not rows.numbers and column_map is None and is_units(row):
+            rows.columns = require_columns(where, [f"{n} ({u})" for n, u in zip(named, row, strict=True)])
             columns = list(rows.columns.values())
             continue
         rows.numbers.append(number)
@@ -243,7 +169,7 @@ def _after_header(where: str, text: str, separator: str, header: str) -> Iterato
     begun = False
     if separator == " ":
         for number, line in enumerate(text.split("\n"), start=1):
-            if begun and line.strip() and not line.startswith(_COMMENTS):
+            if begun and line.strip() and not line.startswith(COMMENTS):
                 yield number, line.split()
             begun = begun or line == header
         return
@@ -256,7 +182,7 @@ def _after_header(where: str, text: str, separator: str, header: str) -> Iterato
     reader = csv.reader(stream, delimiter=separator, strict=True)
     try:
         for row in reader:
-            if any(cell.strip() for cell in row) and not row[0].startswith(_COMMENTS):
+            if any(cell.strip() for cell in row) and not row[0].startswith(COMMENTS):
                 yield skipped + reader.line_num, row
     except csv.Error as problem:
         where = Text("{where}, row {skipped}", where=where, skipped=skipped + reader.line_num)
@@ -271,15 +197,6 @@ def _fitted(row: list[str], width: int, separator: str, columns: dict[str, Colum
         at = columns[UTC].index
         return [*row[:at], Text("{row} {row2}", row=row[at], row2=row[at + 1]), *row[at + 2 :]]
     return row
-
-
-def _is_units(row: list[str]) -> bool:
-    """Whether a row below the header gives units: no cell begins with a digit or a sign, not all empty."""
-    return (
-        any(cell.strip() for cell in row)
-        and not any(cell.strip()[:1] in "+-.0123456789" or is_empty(cell) or _is_number(cell) for cell in row)
-        and any(unit_of(plain_name(cell.strip("()[] ")), dimension) for cell in row for dimension in UNITS)
-    )
 
 
 def _is_last(text: str, fault: Fault) -> bool:
@@ -316,6 +233,8 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
         if empty.any():
             missing[stem] = empty
     hemispheres = _hemispheres(where, rows, kept, numbered, values, missing)
+    hemispheres += _heed_flags(rows, kept, values, missing)
+    told, differing = _choices(where, rows, kept, numbered, values)
     if faults or timing is None:
         raise InputError(faults)
     time_s, dated, clock = timing
@@ -338,7 +257,7 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
         values,
         missing,
         numbered,
-        (*notes, *hemispheres),
+        (*notes, *hemispheres, *differing),
         tuple(
             LeftOut("rows", "", why, count)
             for why, count in (
@@ -348,7 +267,48 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
             if count
         ),
         lambda: (lambda found: np.array([found[number] for number in numbered]))(ids()),
+        tuple(told),
     )
+
+
+def _heed_flags(
+    rows: Rows, kept: list[int], values: dict[str, np.ndarray], missing: dict[str, np.ndarray]
+) -> list[str]:
+    """Take readings that a column of flags calls invalid as missing; say how many."""
+    words: list[str] = []
+    for index, flag in rows.flags.items():
+        stems = [stem for stem in flag.stems if stem in values]
+        found = heed(flag, rows.header[index].strip(), [rows.sides[index][i] for i in kept], stems)
+        if found is None:
+            continue
+        invalid, told = found
+        rows.heeded.add(index)
+        words += told
+        for stem in stems if invalid.any() else ():
+            missing[stem] = missing.get(stem, np.zeros(invalid.size, bool)) | invalid
+    return words
+
+
+def _choices(
+    where: str, rows: Rows, kept: list[int], numbered: list[int], values: dict[str, np.ndarray]
+) -> tuple[list[str], list[str]]:
+    """Say of several columns for one quantity which is taken, and by how much the others differ."""
+    told: list[str] = []
+    differing: list[str] = []
+    for column in rows.others:
+        taken = rows.columns[column.stem]
+        cells = pointed([rows.sides[column.index][i] for i in kept], rows.decimal)
+        try:
+            found, empty = numbers(where, column.name, cells, numbered)
+        except InputError:
+            continue
+        if column.stem not in values or empty.all():
+            continue
+        off = found * column.factor - values[column.stem] * taken.factor
+        text, plainly = column_choice(column.stem, taken.name, column.name, off[~empty])
+        told.append(text)
+        differing += [text] if plainly else []
+    return told, differing
 
 
 def _hemispheres(
@@ -399,6 +359,12 @@ def _timing(
         clock = MappedClock(column_map.time, rows.decimal)
         time_s, dated = clock.read(where, cells, numbered)
         rows.warnings += clock.warnings()
+        return time_s, dated, name
+    if column.stem == UTC and cells and all(map(_WEEK_AND_SECONDS.fullmatch, cells)):
+        weeks = MappedClock(TimeMap(column=name, unit=GPS_WEEK))
+        time_s, dated = weeks.read(where, cells, numbered)
+        rows.warnings += [Text("{name}: GPS weeks and seconds, leap seconds removed", name=column.name)]
+        rows.warnings += weeks.warnings()
         return time_s, dated, name
     if column.stem == CLOCK and DATE in rows.columns:
         dates = rows.cells[DATE]

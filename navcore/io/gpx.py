@@ -10,10 +10,11 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.cells import numbers, times
-from navcore.io.columns import MOST_CELLS, Table, require_columns, table_recording
+from navcore.io.columns import MOST_CELLS, require_columns, table_recording
 from navcore.io.formats import Candidate
 from navcore.io.series import Recording
 from navcore.io.source import read_text
+from navcore.io.table_times import Table
 
 _ROOT = re.compile(r"<(?:\w{1,20}:)?gpx[\s>]")
 _HEAD_CHARACTERS = 4096

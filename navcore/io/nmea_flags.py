@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 INVALID = "not valid"
-DEAD_RECKONED, MANUAL, SIMULATED = "dead-reckoned", "manual", "simulated"
+DEAD_RECKONED, MANUAL, SIMULATED = "estimated (dead-reckoned)", "typed in (manual)", "simulated"
 REDUCED = "of reduced quality"
 NO_SATELLITES = "without satellites"
 GYRO_ALONE = "of the gyro alone, without satellites"

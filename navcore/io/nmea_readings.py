@@ -10,7 +10,7 @@ from navcore.foundation.text import Text
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import Sentences, Tally
 from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, OTHER_MESSAGE, decode
-from navcore.io.times.between import filled, trusted
+from navcore.io.times.between import are_doubled, coarse, filled, trusted
 from navcore.io.times.doubts import trust_of
 from navcore.io.times.steps import back_advice, without_leap_step
 
@@ -24,10 +24,11 @@ is known; its date is that of a clock that was not set; its time runs backwards;
 another instrument is taken; it is used."""
 _ROW = np.dtype([
     ("time_s", float), ("doubtful", bool), ("own", bool), ("kind", np.int32), ("channel", np.int32),
-    ("line", np.int32), ("invalid", bool), ("fate", np.int8),
+    ("line", np.int32), ("invalid", bool), ("fate", np.int8), ("id", np.int32),
 ])  # fmt: skip
 """Of a sentence that makes sense: the time that it gives, NaN without; whether a receiver without a fix gave
-it, and whether it is no stamp; the channel is -1 when it says no more than its time."""
+it, and whether it is no stamp; a number that is equal for sentences that are the same; the channel is -1
+when it says no more than its time."""
 
 
 class Channel(NamedTuple):
@@ -118,6 +119,7 @@ class Gathered:
         rows["doubtful"], rows["fate"] = doubtful[sensible], fates[sensible]
         rows["own"] = (~np.isnan(readings.rows["time_of_day"]) & ~(invalid & ~doubtful))[sensible]
         rows["line"] = sentences.rows["line"][sensible]
+        rows["id"] = _ids(sentences.rows)[sensible]
         rows["kind"] = [kinds[address] for address in compress(addresses, sensible)]
         rows["channel"] = -1
         told, channels = sensible & telling, self._channels
@@ -174,8 +176,13 @@ class Gathered:
                         leaps=leaps,
                     )
                 )
-        rows["time_s"], tally.spread = filled(rows["time_s"], rows["channel"])
-        fates = rows["fate"]
+        fates, ids = rows["fate"], rows["id"]
+        stamps = np.where(rows["own"], np.nan, rows["time_s"])
+        again = coarse(stamps, rows["channel"], ids)
+        rows["time_s"][again] = np.nan
+        if are_doubled(np.where(rows["own"], rows["time_s"], np.nan), rows["channel"], ids):
+            fates[self._repeated(rows) & (fates >= OTHER)] = REPEATED
+        rows["time_s"], tally.spread = filled(rows["time_s"], np.where(fates < OTHER, -1, rows["channel"]))
         # A sentence that says nothing but its time is used as the clock.
         fates[(fates == EMPTY) & clock] = USED
         untimed = np.isnan(rows["time_s"]) & (fates >= OTHER)
@@ -193,6 +200,20 @@ class Gathered:
         for counter, fate in ((tally.untimed, UNTIMED), (tally.empty, EMPTY), (tally.late, LATE)):
             found = Counter(rows["kind"][fates == fate].tolist())
             counter.update({names[kind]: count for kind, count in found.items()})
+
+    def _repeated(self, rows: np.ndarray) -> np.ndarray:
+        """Which sentences without a time are the same as the one of their channel before, at one time."""
+        given = ~np.isnan(rows["time_s"])
+        turn = np.cumsum(
+            given & (np.concatenate([[1.0], np.diff(filled(rows["time_s"], -rows["kind"] - 1)[0])]) != 0.0)
+        )
+        order = np.argsort(rows["channel"], kind="stable")
+        same = np.concatenate([[False], np.diff(rows["channel"][order]) == 0])
+        for column in (turn, rows["id"]):
+            same[1:] &= np.diff(column[order]) == 0
+        found = np.zeros(len(rows), bool)
+        found[order[same]] = True
+        return found & ~given
 
     def _late(self, rows: np.ndarray) -> np.ndarray:
         """Which times run backwards; they and those within the jitter are counted."""
@@ -214,6 +235,12 @@ class Gathered:
             advice = back_advice(rows["time_s"][of_channel], place, self._tally.dated)
             self._tally.first_late = int(rows["line"][first]), float(back_s[first]), address, advice
         return late
+
+
+def _ids(sentences: np.ndarray) -> np.ndarray:
+    """Numbers of sentences, equal for those that are the same (by checksum and length), shape (n,)."""
+    same = (sentences["checksum"] << 8) + (sentences["end"] - sentences["begin"])
+    return np.where(sentences["checksum"] < 0, -sentences["line"], same)
 
 
 def _of_instruments(channels: list[Channel]) -> list[Channel]:

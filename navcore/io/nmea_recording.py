@@ -43,6 +43,8 @@ _KINDS = {
     "velocity": ("RMC", "VTG"), "water": ("VBW", "VHW"), "ground": ("VBW",), "heading": _HEADINGS,
 }  # fmt: skip
 _PLACES = ("GGA", "GNS", "RMC", "GLL")
+_MOST_REPEATED = 0.01
+"""Share of a kind; fewer are told in JSON alone."""
 _CHECKSUM = Text("wrong checksum")
 _WHY = {
     UNREAD: Text("this kind is not read"),
@@ -102,7 +104,7 @@ def read(path: Path) -> Recording:
         tally.invalid,
         tally.untimed.total(),
         tally.jitter,
-        (*log.warnings, *differing),
+        (*log.warnings, *_repeated(log), *differing, *(_magnetic(log) if "heading" not in taken else ())),
         int(np.count_nonzero(fates == USED)),
         tuple(_lines_left_out(log)),
         tuple(
@@ -112,6 +114,30 @@ def read(path: Path) -> Recording:
         tuple(told),
     )
     return Recording(**series, sources=(source,))
+
+
+def _repeated(log: NmeaLog) -> Iterator[str]:
+    """Say which kinds have sentences that stand at the time of another one."""
+    kinds, fates = log.ordered.kinds, log.ordered.fates
+    for kind, count in Counter(kinds[fates == REPEATED].tolist()).items():
+        if count > _MOST_REPEATED * np.count_nonzero(kinds == kind):
+            yield Text(
+                "{count} {kind} repeat another one at the same time: left out",
+                count=count,
+                kind=log.ordered.names[kind],
+            )
+
+
+def _magnetic(log: NmeaLog) -> Iterator[str]:
+    """Say of a log without a true heading that it has a magnetic one."""
+    for address, count in log.tally.intact.items():
+        if address[2:] in ("HDM", "HDG"):
+            yield Text(
+                "{count} readings of {address} are magnetic headings without a variation: no true heading, "
+                "not used",
+                count=count,
+                address=address,
+            )
 
 
 def _lines_left_out(log: NmeaLog) -> Iterator[LeftOut]:

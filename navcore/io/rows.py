@@ -4,6 +4,7 @@ import csv
 from dataclasses import dataclass, field
 
 from navcore.io.column_names import Column
+from navcore.io.table_flags import TableFlag
 
 
 def split_line(line: str, separator: str) -> list[str]:
@@ -34,5 +35,9 @@ class Rows:
     """Factors of the columns whose numbers a map turns around or scales."""
     skipped: list[int] = field(default_factory=list)
     """Numbers of the rows that a map lets be left out."""
+    flags: dict[int, TableFlag] = field(default_factory=dict)
+    """Columns that say how good others are, by their places."""
+    others: list[Column] = field(default_factory=list)
+    """Columns of quantities for which another column is taken."""
     layout: tuple[str, str] = "", ""
     """Separator and line of the header."""

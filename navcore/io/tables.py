@@ -13,7 +13,7 @@ from navcore.foundation.text import Text
 from navcore.io.cells import times
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, names_unit
-from navcore.io.columns import Table, column_warnings, pair_faults, require_columns, table_recording
+from navcore.io.columns import column_warnings, pair_faults, require_columns, table_recording
 from navcore.io.containers.base import LONGEST_TIME, Raw
 from navcore.io.containers.opening import is_container, open_container
 from navcore.io.epochs import numeric_times
@@ -21,6 +21,7 @@ from navcore.io.formats import Candidate
 from navcore.io.hemispheres import is_named
 from navcore.io.mapped_times import MappedClock
 from navcore.io.series import Recording
+from navcore.io.table_times import Table
 
 
 def recognises(candidate: Candidate) -> bool:

@@ -203,3 +203,35 @@ def test_two_receivers_of_one_ship_are_told_without_a_warning(tmp_path: Path) ->
         "position: GPGGA is taken (20), GNGGA (20) is not used: they differ by 11.1 m" in t
         for t in report.text
     )
+
+
+@pytest.mark.parametrize("stamps", [False, True])
+def test_lines_that_are_there_twice_are_one(tmp_path: Path, stamps: bool) -> None:
+    lines = [
+        x
+        for k in range(30)
+        for body in (rmc(k, 38.0, 9.0, 5.0, 20.0), f"HEHDT,{k / 10:.1f},T", VBW)
+        for x in [stamped(k, body) if stamps else sentence(body)] * 2
+    ]
+    read = read_recording(path := write(tmp_path / "log.txt", lines))
+    assert read.heading is not None and read.water is not None
+    for series in (read.heading, read.water):
+        assert series.time_s == pytest.approx(T0 + np.arange(30.0), abs=1e-6)
+    assert any("30 HEHDT repeat another one" in told for told in read.warnings)
+    assert _accounted(path) == {
+        f"{kind}: another stands at the same time": 30 for kind in ("GPRMC", "HEHDT", "VDVBW")
+    }
+
+
+@pytest.mark.parametrize("seconds", [1, 60])
+def test_stamps_coarser_than_the_lines_are_spread(tmp_path: Path, seconds: int) -> None:
+    times = np.arange(0.0, 10.0 * seconds, seconds / 10.0)
+    lines = [
+        f"2024-02-28T23:{58 + int(t // seconds * seconds) // 60:02d}:{int(t // seconds * seconds) % 60:02d}Z "
+        + sentence(f"HEHDT,{k / 10:.1f},T")
+        for k, t in enumerate(times[: 20 if seconds == 60 else 100])
+    ]
+    heading = read_recording(write(tmp_path / "log.txt", lines)).heading
+    assert heading is not None
+    assert heading.time_s.size == len(lines)
+    assert np.diff(heading.time_s[:10]) == pytest.approx(seconds / 10.0, abs=1e-6)

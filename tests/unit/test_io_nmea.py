@@ -234,7 +234,7 @@ def test_jitter_within_the_tolerance_is_sorted_and_counted(tmp_path):
     [
         (b"   \r\n \n", "empty"),
         (bytes(range(256)) * 20, "binary"),
-        (b"\xff\xd8\xff\xe0" * 100 + b"plain", "binary"),
+        (b"\xff\xd8\xff\xe0" * 100 + b"plain", "is a picture"),
         (b"hello, world\nthis is no log\n", "not a log this reader knows"),
         (b"[run]\nduration_h = 1.0\n", "not a log this reader knows"),
         ((sentence("GPZDA,000000.00,06,12,2018,00,00") + "\n").encode(), "no usable sentence"),

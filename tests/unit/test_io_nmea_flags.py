@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from navcore.io.nmea_flags import FLAGS, INVALID, UNKNOWN, Flag, meaning
+from navcore.io.nmea_flags import DEAD_RECKONED, FLAGS, INVALID, UNKNOWN, Flag, meaning
 from navcore.io.nmea_sentences import KINDS
 from navcore.io.recording import read_recording
 from tests.nmea import sentence, stamped, write
@@ -70,7 +70,7 @@ def test_every_sentence_that_is_read_has_flags_or_is_known_to_have_none() -> Non
 def test_letters_of_several_systems_count_where_they_agree() -> None:
     gns = next(flag for flag in FLAGS if flag.sentence == "GNS")
     assert [meaning(gns, modes) for modes in ("NN", "AN", "EN", "EA", "SS", "")] == [
-        INVALID, "", "dead-reckoned", "", "simulated", INVALID,
+        INVALID, "", DEAD_RECKONED, "", "simulated", INVALID,
     ]  # fmt: skip
 
 

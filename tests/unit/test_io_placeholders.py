@@ -54,7 +54,9 @@ def test_a_ship_that_passes_zero_keeps_its_fix(tmp_path: Path) -> None:
     assert not any("0 N 0 E" in w for w in read.warnings)
 
 
-@pytest.mark.parametrize(("quality", "doubt"), [(6, "dead-reckoned"), (7, "manual"), (8, "simulated")])
+@pytest.mark.parametrize(
+    ("quality", "doubt"), [(6, "estimated (dead-reckoned)"), (7, "typed in (manual)"), (8, "simulated")]
+)
 def test_a_fix_that_is_not_measured_is_told(tmp_path: Path, quality: int, doubt: str) -> None:
     lines = [stamped(k, gga(k, 38.0, 9.0, 20.0, quality if k < 3 else 2)) for k in range(8)]
     read = read_recording(write(tmp_path / "fixes.nmea", lines))
@@ -62,7 +64,7 @@ def test_a_fix_that_is_not_measured_is_told(tmp_path: Path, quality: int, doubt:
 
 
 @pytest.mark.parametrize(
-    ("mode", "doubt"), [("E", "dead-reckoned"), ("S", "simulated"), ("A", ""), ("D", "")]
+    ("mode", "doubt"), [("E", "estimated (dead-reckoned)"), ("S", "simulated"), ("A", ""), ("D", "")]
 )
 def test_the_mode_of_rmc_is_heeded(tmp_path: Path, mode: str, doubt: str) -> None:
     lines = [sentence(f"{rmc(k, 38.0, 9.0, 5.0, 20.0)[:-1]}{mode}") for k in range(4)]

@@ -7,7 +7,7 @@ import pytest
 from navcore.motion.track import TrackMotion
 from navcore.sensors.recorded import recording_notices
 from navcore.sensors.reference import Reference
-from tests.planted import FORMATS, IMU, LARGE, Case, cases, moved, told
+from tests.planted import FILE_FAULTS, FORMATS, IMU, LARGE, Case, cases, moved, told, told_of_file
 from tests.recordings import OWN_SHIP
 
 ALL = [case for case in cases() if moved(case) > LARGE or case.column == "time"]
@@ -30,6 +30,12 @@ def test_there_are_at_least_300_combinations() -> None:
 @pytest.mark.parametrize("case", ALL[::16], ids=lambda case: case.name)
 def test_a_planted_fault_is_told_or_refused(case: Case, tmp_path: Path) -> None:
     assert told(case, tmp_path)
+
+
+@pytest.mark.parametrize("name", FILE_FAULTS)
+def test_a_fault_of_a_whole_file_is_told_or_does_no_harm(name: str, tmp_path: Path) -> None:
+    words, same = told_of_file(name, tmp_path)
+    assert words or same
 
 
 @pytest.mark.nightly

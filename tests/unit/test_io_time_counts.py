@@ -74,7 +74,7 @@ def test_a_day_alone_is_no_time_of_many_rows(tmp_path: Path) -> None:
 def test_rows_within_less_than_a_millisecond_are_no_log(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text("t_s,heading_deg\n" + "".join(f"{5.0 + 1e-6 * k:.6f},{k}\n" for k in range(50)))
-    with pytest.raises(InputError, match="counted in another unit, such as days"):
+    with pytest.raises(InputError, match="counted in another unit, such as days or years"):
         read_recording(path)
 
 
@@ -153,3 +153,32 @@ def test_leap_seconds_of_some_dates() -> None:
         17,
         18,
     ]
+
+
+def test_weeks_and_seconds_of_gps_in_two_columns_need_no_map(tmp_path: Path) -> None:
+    gps = START + LEAP - EPOCHS["gps"] + np.arange(5.0)
+    path = tmp_path / "log.csv"
+    rows = "".join(f"{t // 604800:.0f},{t % 604800:.1f},{60 + k}\n" for k, t in enumerate(gps))
+    path.write_text("gps_week,gps_tow,heading_deg\n" + rows)
+    heading = read_recording(path).heading
+    assert heading is not None
+    assert heading.time_s == pytest.approx(START + np.arange(5.0))
+    rows = "".join(f"{t // 604800:.0f} {t % 604800:.1f} 50.0 -4.0 12.0 1\n" for t in gps)
+    (tmp_path / "log.pos").write_text("%  GPST  latitude(deg) longitude(deg)  height(m)   Q\n" + rows)
+    position = read_recording(tmp_path / "log.pos").position
+    assert position is not None
+    assert position.time_s == pytest.approx(START + np.arange(5.0))
+
+
+def test_times_of_day_as_digits_are_told_from_seconds() -> None:
+    digits = np.array([93058.0, 93059.0, 93100.0, 93101.0])
+    assert read_counts(digits).time_s == pytest.approx(34258.0 + np.arange(4.0))
+    assert read_counts(93000.0 + np.arange(200.0)).time_s[-1] == 93199.0
+
+
+@pytest.mark.parametrize("first", [138.4, 2024.375])
+def test_days_of_a_year_and_years_are_asked_for(tmp_path: Path, first: float) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("time,heading_deg\n" + "".join(f"{first + k / 3e7:.10f},{k}\n" for k in range(50)))
+    with pytest.raises(InputError, match="such as days or years"):
+        read_recording(path)

@@ -13,6 +13,10 @@ _LONGEST_STEP_S, _STEPS = 10.0, 5.0
 """A time of doubt follows a sure one within this many s, or usual steps."""
 
 
+_FEWEST_DOUBLED, _DOUBLED = 6, 0.4
+"""Lines that give a time, and the share of them that repeat the one before."""
+
+
 def trusted(time_s: np.ndarray, doubtful: np.ndarray) -> np.ndarray:
     """Which times of a log are its clock's.
 
@@ -54,6 +58,41 @@ def trusted(time_s: np.ndarray, doubtful: np.ndarray) -> np.ndarray:
     return found
 
 
+def coarse(time_s: np.ndarray, kinds: np.ndarray, ids: np.ndarray) -> np.ndarray:
+    """Which lines bear a stamp that is coarser than their kind: the same as the line of their kind before.
+
+    Parameters
+    ----------
+    time_s : ndarray, shape (n,)
+        Stamps in the order of the lines; NaN where there is none.
+    kinds, ids : ndarray of int, shape (n,)
+        Kinds, negative where they say nothing; equal for lines that are the same.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        None of a kind whose lines with one stamp are all the same: these are there twice.
+    """
+    found = np.zeros(time_s.size, bool)
+    rows = np.flatnonzero(~np.isnan(time_s) & (kinds >= 0))
+    rows = rows[np.argsort(kinds[rows], kind="stable")]
+    again = (np.diff(kinds[rows]) == 0) & (np.diff(time_s[rows]) == 0.0)
+    differing = again & (np.diff(ids[rows]) != 0)
+    coarse_kinds = np.unique(kinds[rows[1:]][differing])
+    found[rows[1:][again & np.isin(kinds[rows[1:]], coarse_kinds)]] = True
+    return found
+
+
+def are_doubled(time_s: np.ndarray, kinds: np.ndarray, ids: np.ndarray) -> bool:
+    """Whether most lines that give a time are there twice, as after two loggers were joined; shapes (n,)."""
+    rows = np.flatnonzero(~np.isnan(time_s) & (kinds >= 0))
+    rows = rows[np.argsort(kinds[rows], kind="stable")]
+    if rows.size < _FEWEST_DOUBLED:
+        return False
+    same = (np.diff(kinds[rows]) == 0) & (np.diff(time_s[rows]) == 0.0) & (np.diff(ids[rows]) == 0)
+    return bool(np.mean(same) >= _DOUBLED)
+
+
 def filled(time_s: np.ndarray, kinds: np.ndarray) -> tuple[np.ndarray, int]:
     """Times of all lines, of which some give one.
 
@@ -87,10 +126,13 @@ def filled(time_s: np.ndarray, kinds: np.ndarray) -> tuple[np.ndarray, int]:
     kind, turn = kinds[waiting], turn_of[last[waiting]]
     first = np.concatenate([[True], (np.diff(kind) != 0) | (np.diff(turn) != 0)])
     group = np.cumsum(first) - 1
-    counts = np.bincount(group)
+    # A line that gives the time itself is the first of its kind.
+    size = int(turn_of.max()) + 1
+    own = np.isin(kind[first] * size + turn[first], kinds[given] * size + turns).astype(int)
+    counts = np.bincount(group) + own
     if counts.max() == 1:
         return found, 0
-    places = np.arange(waiting.size) - np.flatnonzero(first)[group]
+    places = np.arange(waiting.size) - np.flatnonzero(first)[group] + own[group]
     each = np.where(steps[turn[first]] > 0.0, steps[turn[first]], np.nan) / counts
     usual = {one: _median(each[kind[first] == one]) for one in np.unique(kind).tolist()}
     ordinary = np.array([usual[one] for one in kind[first].tolist()])

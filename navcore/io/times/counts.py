@@ -109,6 +109,8 @@ _FURTHER = (
     Count("1601", _TICK_S, Text("tenths of µs"), EPOCHS["filetime"]),
     Count(Text("the year 1"), _TICK_S, Text("tenths of µs"), EPOCHS["dotnet"]),
 )
+_FEWEST_DAYS = 3000.0
+"""Smaller numbers of days may be those of a year, or years."""
 _OF_SECONDS = 5
 """Of these, the epochs from which seconds are counted."""
 _CALENDAR_FROM, _CALENDAR_TO = 1.99e13, 2.2e13
@@ -164,11 +166,14 @@ def read_counts(values: np.ndarray, unit: str = "") -> Times:
     days = [count for count in _DAYS if _fits(count, known)]
     unix = [count for key, count in _UNIX.items() if _fits(count, known) and _is_used(count, key, size)]
     if size < _DATED_FROM:
-        if not days and not own:
+        if own and (clock := _of_day_digits(values)) is not None:
+            return Times(clock, False, Text("times of day, hhmmss"))
+        if not days and not own and size >= _FEWEST_DAYS:
             days = [count for count in _FURTHER_DAYS if _fits(count, known)]
         if days and own:
             raise Ambiguous(_either(known, days, own=True))
-        return _only(values, known, days) or Times(values, False)
+        found = _only(values, known, days) or Times(values, False)
+        return found._replace(told=found.told + _of_1904(known)) if days == [_DAYS[0]] else found
     found = _only(values, known, unix, tell=False)
     if found is None:
         found = _only(values, known, [count for count in _FURTHER if _fits(count, known)])
@@ -241,6 +246,30 @@ def unix_by_size(values: np.ndarray) -> np.ndarray:
     while size >= _DATED_FROM * 1e3 and steps < 3:
         size, steps = size / 1e3, steps + 1
     return values / 1e3**steps
+
+
+def _of_1904(known: np.ndarray) -> str:
+    """Say of days since 1899-12-30 which date they give from 1904 on, as workbooks of old Macs count."""
+    moment = (np.array([known[0]]) * DAY_S) + EPOCHS["1904"]
+    return (
+        Text(" (from 1904 on it would be {moment})", moment=moment_text(moment[0]))
+        if is_plausible(moment)[0]
+        else ""
+    )
+
+
+def _of_day_digits(values: np.ndarray) -> np.ndarray | None:
+    """Seconds of numbers such as 93000 and 93001.5, times of day; None where plain seconds are as likely."""
+    whole = np.floor(values)
+    hours, minutes, seconds = whole // 10000, whole // 100 % 100, whole % 100 + (values - whole)
+    if values.size < 2 or not np.all((hours < 24) & (minutes < 60) & (seconds < 60)):
+        return None
+    found = hours * 3600.0 + minutes * 60.0 + seconds
+    steps, plain = np.diff(found), np.diff(values)
+    # At each full minute the digits leap by 41 where the time goes on by 1.
+    leaps = np.abs(plain - steps) > 1.0
+    regular = np.all(steps > 0.0) and steps.max() < 10.0 * np.median(steps)
+    return found if leaps.any() and regular else None
 
 
 def _of_digits(values: np.ndarray) -> np.ndarray | None:
