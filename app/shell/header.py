@@ -30,11 +30,12 @@ _WAITS = "#B26A00"
 """Colour of a state that will not last."""
 # While a picture is old it is dimmed.
 _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
-# Over the frames of the pictures, which are empty before the first run.
+# Over the frames of the pictures, empty before the first run; the bar would cut an element of its own.
 _BEFORE_PICTURES = (
-    '{state}<div id="sb-compiling" style="position:fixed;left:62%;top:30%;transform:translateX(-50%);'
-    "z-index:20;padding:14px 20px;border:1px solid #c9d2da;border-radius:8px;background:#fff;color:#33475b;"
-    'text-align:center;pointer-events:none"><b>{title:html}</b><br>{rest:html}</div>'
+    '{state}<style>body::after{{content:"{title}\\a {rest}";position:fixed;left:70%;top:30%;z-index:20;'
+    "transform:translateX(-50%);padding:14px 20px;border:1px solid #c9d2da;border-radius:8px;background:#fff;"
+    "color:#33475b;font:14px var(--sb-font,sans-serif);text-align:center;white-space:pre;"
+    "pointer-events:none}}</style>"
 )
 
 

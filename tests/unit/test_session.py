@@ -10,6 +10,7 @@ import pytest
 
 from navcore.engine import simulation
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.kernel_wait import KernelAwaited
 from navcore.questions.verify import VerifyQuestion
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
@@ -361,3 +362,22 @@ def test_the_first_picture_of_a_new_visitor_is_computed_before_they_come() -> No
     change(session, page, "duration_h", 0.5)
     assert session.run.scenario == session.scenario and session.run.t_s[-1] == 1800.0
     visitors.close()
+
+
+def test_a_run_whose_kernels_are_being_compiled_says_so_and_is_shown_once_they_are_there(
+    tmp_path: Path,
+) -> None:
+    tried: list[Scenario] = []
+
+    def awaiting(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
+        tried.append(scenario)
+        if len(tried) < 3:
+            raise KernelAwaited("advance")
+        return answer(scenario)
+
+    session, page = Session("waits", PRESET, "", tmp_path, awaiting), Watcher()
+    session.attach(page)
+    assert session.wait_idle(10.0)
+    told = [name for name in page.names if name.startswith("run_")]
+    assert told == ["run_awaits_kernels", "run_awaits_kernels", "run_ended"]
+    session.close()
