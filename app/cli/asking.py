@@ -30,21 +30,31 @@ class AskingCommand:
     def execute(self) -> int:
         """Answer and print; 3 when it was stopped, or a method diverged."""
         given: Mapping[str, Any] = vars(self)
-        out: Path | None = given.get("out")
         with noting() as reads:
             question = self.asked.ask(self._fields(given))
-        force = given.get("force", False)
-        if out is not None:
-            question.require_free(out, reads, force=force)
-        answer = self._answered(question, given)
-        if out is not None:
-            question.write(answer, out, reads, force=force)
+        self._free(question, given, reads)
+        answer = self._answered(question, given, reads)
+        self._written(question, answer, given, reads)
         emit_result(given["json"], answer.document(), answer.lines)
         if not answer.complete:
             say(f"{self._source(given)}: stopped; {answer.so_far}")
         return 3 if answer.failed or not answer.complete else 0
 
-    def _answered(self, question: Question, given: Mapping[str, Any]) -> Answer:
+    def _free(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> None:
+        """Refuse a place for ``--out`` before the work."""
+        if given.get("out") is not None:
+            question.require_free(given["out"], reads, force=given.get("force", False))
+
+    def _written(
+        self, question: Question, answer: Answer, given: Mapping[str, Any], reads: list[Any]
+    ) -> None:
+        """Write what ``--out`` asks for."""
+        if given.get("out") is not None:
+            question.write(answer, given["out"], reads, force=given.get("force", False))
+
+    def _answered(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> Answer:
+        """Answer, and show the progress."""
+        del reads
         from schuler_bench.cli.progress import working
 
         with working(self.asked.title.lower(), given["quiet"], self._source(given)) as (progress, stopped):
@@ -59,16 +69,30 @@ class AskingCommand:
 
         fields = {one.name: given[one.name] for one in self.asked.options() if given[one.name] is not None}
         subject = given[self.asked.subject]
-        if not subject and given["set"]:
+        if not subject and given.get("set"):
             allowed = "needs a SCENARIO whose field it overrides"
             raise InputError(Fault("", "--set", given["set"][0], allowed))
         if not subject:
             return fields
+        if "where" in self.asked.model_fields:
+            fields["where"] = subject
         return fields | {self.asked.subject: load(subject, given["set"]) if "set" in given else subject}
 
 
-def command_of(question: type[Question]) -> type[AskingCommand]:
-    """Make the command of a question: a dataclass from which tyro reads a command line."""
+def command_of(
+    question: type[Question], base: type[AskingCommand] = AskingCommand, *more: tuple[str, Any, Any]
+) -> type[AskingCommand]:
+    """Make the command of a question: a dataclass from which tyro reads a command line.
+
+    Parameters
+    ----------
+    question : type of Question
+        Its fields are the options.
+    base : type
+        What it does with them.
+    *more : (str, annotation, default)
+        Options beside these.
+    """
     subject = question.model_fields[question.subject]
     metavar = question.subject.upper()
     positional = Annotated[Positional[str], arg(metavar=metavar, help=subject.description)]
@@ -82,6 +106,7 @@ def command_of(question: type[Question]) -> type[AskingCommand]:
         rows.append(("out", _with(Path | None, _METAVARS[question.writes], words), None))
     if question.writes == "file":
         rows.append(("force", Annotated[bool, arg(help=FORCE)], False))
+    rows += more
     rows.append(("json", Annotated[bool, arg(help="Print one JSON document.")], False))
     rows.append(("quiet", Annotated[bool, arg(help="No progress bar.")], False))
     # what has no default stands first
@@ -92,7 +117,7 @@ def command_of(question: type[Question]) -> type[AskingCommand]:
             (name, kind) if default is ... else (name, kind, field(default=default))
             for name, kind, default in rows
         ],
-        bases=(AskingCommand,),
+        bases=(base,),
         namespace={"asked": question, "__doc__": str(question.help)},
         frozen=True,
     )

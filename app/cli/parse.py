@@ -18,7 +18,7 @@ from schuler_bench.cli.network import NetworkCommand
 from schuler_bench.cli.presets import PresetsCommand
 from schuler_bench.cli.run import RunCommand
 from schuler_bench.cli.serve import ServeCommand
-from schuler_bench.cli.study import StudyCommand
+from schuler_bench.cli.study import SCHEDULER, OnCluster
 from schuler_bench.cli.terminal import emit, lost
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _COMMANDS = {
     "presets": PresetsCommand,
     "check": CheckCommand,
     **{id: command_of(question) for id, question in QUESTIONS.items()},
-    "study": StudyCommand,
+    "study": command_of(QUESTIONS["study"], OnCluster, SCHEDULER),
     "bench": BenchCommand,
 }
 _PLACES = ("--out", "--write-map")

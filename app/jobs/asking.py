@@ -10,7 +10,9 @@ from navcore.questions.base import Cancelled, Progress, Question
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs.load import heavy_load, spare_load
 from schuler_bench.jobs.refusals import refusals
+from schuler_bench.jobs.scheduler import Lane
 from schuler_bench.jobs.search import Search
+from schuler_bench.jobs.worker import Watch
 
 CHANGED = Text("Stopped: the scenario was changed meanwhile.")
 _SPARE_S = 0.5, 0.25
@@ -33,6 +35,8 @@ class Asker(Search[Any, Any]):
 
     Attributes
     ----------
+    prepared : callable
+        Gives a question what it needs of this machine, such as a folder, before it is answered here.
     accepted : Scenario or None
         The scenario into which the answer was taken over.
     """
@@ -61,6 +65,11 @@ class Asker(Search[Any, Any]):
         if question.spare:
             self.report_after_s, self.report_every_s = _SPARE_S
         self.accepted: Scenario | None = None
+        self.prepared: Callable[[Question], Question] = lambda asked: asked
+
+    def _carry_out(self, asked: Question, progress: Progress, watch: Watch) -> Any:
+        here = watch.lane is not Lane.CLUSTER  # its workers have other disks
+        return super()._carry_out(self.prepared(asked) if here else asked, progress, watch)
 
     def begin(self, asked: Question) -> None:
         """Ask this, in place of what is under way."""

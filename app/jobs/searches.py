@@ -9,8 +9,7 @@ from navcore.questions import QUESTIONS
 from navcore.questions.why import WhyQuestion
 from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.odds import Judge
-from schuler_bench.jobs.studier import Studier
-from schuler_bench.jobs.sweeper import Sweeper
+from schuler_bench.jobs.sweeps import Sweeper
 
 _log = logging.getLogger("schuler.searches")
 
@@ -31,8 +30,6 @@ class Searches:
         Shares of seeds that meet the limits.
     sweeper : Sweeper
         Runs at other latitudes, log errors, sensor grades and sea states.
-    studier : Studier
-        A study: one scenario over many settings and seeds.
     """
 
     def __init__(self, name: str) -> None:
@@ -41,12 +38,10 @@ class Searches:
         self.asking = {id: Asker(self._tell, question, name) for id, question in QUESTIONS.items()}
         self.judge = Judge(self._tell, name)
         self.sweeper = Sweeper(self._tell, name)
-        self.studier = Studier(self._tell, name)
         self._all = (
             *self.asking.values(),
             self.judge,
             self.sweeper,
-            self.studier,
         )
 
     def watch(self, changed: Callable[[], None]) -> None:

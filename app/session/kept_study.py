@@ -7,21 +7,23 @@ import logging
 from pathlib import Path
 
 from navcore.foundation.errors import InputError
+from navcore.questions.study import StudyQuestion
 from navcore.scenario.model import Scenario
+from navcore.study.studied import Studied
 from schuler_bench.http.ids import log_name
-from schuler_bench.jobs.studier import Studier, StudyResult, StudyTask
+from schuler_bench.jobs.asking import Asker
 from schuler_bench.jobs.words import without_folders
 from schuler_bench.session.folder import empty_study, opened
 
 _log = logging.getLogger("schuler.store")
 
 
-def keep_study(studier: Studier, path: Path, where: str) -> None:
+def keep_study(studier: Asker, path: Path, where: str) -> None:
     """Let a session's studies be kept in a folder, and take up what an earlier server has left there.
 
     Parameters
     ----------
-    studier : Studier
+    studier : Asker
         Of the session; has no study yet.
     path : Path
         The folder; need not exist.
@@ -37,10 +39,10 @@ def keep_study(studier: Studier, path: Path, where: str) -> None:
         else:
             if found is not None:
                 studier.asked, studier.result = found
-    studier.place = lambda: _emptied(path)
+    studier.prepared = lambda asked: asked.model_copy(update={"folder": _emptied(path)})
 
 
-def _reopened(path: Path, where: str) -> tuple[StudyTask, StudyResult] | None:
+def _reopened(path: Path, where: str) -> tuple[StudyQuestion, Studied] | None:
     """Study and results of a folder; None where no run is complete."""
     from navcore.study.file import load
     from navcore.study.plan import Plan
@@ -58,8 +60,8 @@ def _reopened(path: Path, where: str) -> tuple[StudyTask, StudyResult] | None:
         return None
     own = plan.study.scenario
     present = None if where or isinstance(own, str) else Scenario.parse(own)
-    task = StudyTask(plan.study, where, plan.scenario, present)
-    return task, StudyResult(document, (path / RUNS_FILE).read_bytes())
+    task = StudyQuestion(study=plan.study, where=where, scenario=present, workers=1)
+    return task, Studied(document, (path / RUNS_FILE).read_bytes())
 
 
 def _emptied(path: Path) -> Path | None:

@@ -155,7 +155,7 @@ class Sessions:
         if self._store is not None:
             session.uploads.has_room = self._store.has_room
             session.uploads.keep_once = self._store.contents.keep_once
-            keep_study(session.searches.studier, self._store.study_folder(id), study_name(session))
+            keep_study(session.searches.asking["study"], self._store.study_folder(id), study_name(session))
         session.on_answer = self._on_answer
         session.share = partial(self._share, session)
         session.shared_pins = partial(self._shared_pins, session)

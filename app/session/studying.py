@@ -10,9 +10,10 @@ from navcore.foundation import guarded
 from navcore.foundation.cores import cores
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.questions.study import StudyQuestion
 from navcore.scenario.file import FILE_FIELDS, parse_toml, presets, read
 from navcore.scenario.model import Scenario
-from schuler_bench.jobs.studier import StudyTask, require_small
+from schuler_bench.jobs.asking import Asker
 
 if TYPE_CHECKING:
     from navcore.study.model import Study
@@ -24,6 +25,8 @@ PRESENT, UPLOADED = "", "uploaded"
 NOTHING = "nothing"
 """In the place of a second quantity that is varied."""
 LARGEST_TEXT = 200_000
+MOST_RUNS, MOST_S = 20_000, 900.0
+"""Runs of a study on a page, and its estimated processor time."""
 MOST_POINTS = 50
 """Points of a study over which designs are judged on a page."""
 _MOST_VALUES = 300
@@ -100,7 +103,7 @@ def _named_files(value: Any, path: str) -> Iterator[str]:
             yield from _named_files(inner, f"{path}.{place}")
 
 
-def chosen_task(session: Session) -> StudyTask:
+def chosen_task(session: Session) -> StudyQuestion:
     """Make the study that the session's display chooses.
 
     Raises
@@ -109,7 +112,7 @@ def chosen_task(session: Session) -> StudyTask:
         The scenario cannot be varied so, or the study is too large for a page.
     """
     plan, present = _chosen(session)
-    return StudyTask(plan.study, plan.where, plan.scenario, present)
+    return StudyQuestion(study=plan.study, where=plan.where, scenario=present, workers=1)
 
 
 def _chosen(session: Session) -> tuple[Plan, Scenario | None]:
@@ -174,7 +177,7 @@ def study_of_points(session: Session) -> Study:
     return plan.study
 
 
-def run_scenario(task: StudyTask, number: int) -> Scenario:
+def run_scenario(task: StudyQuestion, number: int) -> Scenario:
     """Scenario of one run of a study.
 
     Raises
@@ -182,11 +185,32 @@ def run_scenario(task: StudyTask, number: int) -> Scenario:
     InputError
         There is no such run, or the scenario refuses its setting.
     """
-    from navcore.study.plan import Plan
-
-    plan = Plan(task.study, task.where)
+    plan = task.plan
     if not 0 <= number < plan.runs:
         allowed = Text("must be >= 0 and < {runs}", runs=plan.runs)
         raise InputError(Fault(task.where, "run", number, allowed))
     setting, seed = plan.at(number)
     return plan.seeded(plan.scenario_of(setting), seed)
+
+
+def require_small(plan: Plan) -> None:
+    """Refuse a study that takes too long for a page; raises `InputError`."""
+    if plan.runs <= MOST_RUNS and plan.seconds() <= MOST_S:
+        return
+    allowed = Text(
+        "is {runs} runs, about {minutes:.3g} min; on the page at most {most} runs and {longest:g} min: give "
+        "fewer values or seeds, or run the file with schuler study",
+        runs=plan.runs,
+        minutes=plan.seconds() / 60.0,
+        most=MOST_RUNS,
+        longest=MOST_S / 60.0,
+    )
+    raise InputError(Fault("", Text("study"), None, allowed))
+
+
+def left_of(studier: Asker) -> StudyQuestion | None:
+    """Rest of the last study; None when it is complete."""
+    found, asked = studier.result, studier.asked
+    if found is None or asked is None or found.complete:
+        return None
+    return asked.model_copy(update={"runs": found.runs})

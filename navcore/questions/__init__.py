@@ -16,6 +16,8 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.pareto:ParetoQuestion",
     "navcore.questions.adapt:AdaptQuestion",
     "navcore.questions.design:DesignQuestion",
+    "navcore.questions.study:StudyQuestion",
+    "navcore.questions.sweep:SweepQuestion",
     "navcore.questions.verify:VerifyQuestion",
     "navcore.questions.why:WhyQuestion",
 )

@@ -51,7 +51,7 @@ else:
     """Type of a field that holds a scenario: itself, the name of a preset, or a file."""
 
 
-def option(default: Any, *, label: str = "", help: str = "", metavar: str = "") -> Any:
+def option(default: Any, *, label: str = "", help: str = "", metavar: str = "", hidden: bool = False) -> Any:
     """Declare a field of a question that is no number: a text, a choice, a flag, or several texts.
 
     Parameters
@@ -62,12 +62,15 @@ def option(default: Any, *, label: str = "", help: str = "", metavar: str = "") 
         Name on the page, and what it does.
     metavar : str
         Stands for a value in the help of the command line.
+    hidden : bool
+        The program gives it: no option of the command line, no parameter of the function.
 
     Returns
     -------
     pydantic field declaration.
     """
     extra: dict[str, Any] = {name: text for name, text in (("label", label), ("metavar", metavar)) if text}
+    extra |= {"hidden": True} if hidden else {}
     return Field(default=default, description=help or None, json_schema_extra=extra or None)
 
 
@@ -183,7 +186,9 @@ class Question(Parameters):
     def options(cls) -> tuple[Option, ...]:
         """Fields beside the subject, in order."""
         return tuple(
-            _option(name, info) for name, info in cls.model_fields.items() if name not in ("id", cls.subject)
+            _option(name, info)
+            for name, info in cls.model_fields.items()
+            if name not in ("id", cls.subject) and not extra_of(info).get("hidden")
         )
 
     def answer(self, progress: Progress | None = None, cancelled: Cancelled | None = None) -> Answer:

@@ -8,9 +8,6 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.questions.base import Question, option
 
-if TYPE_CHECKING:
-    from navcore.study.model import Study
-
 ALONG = option(
     False,
     label=Text("over the run"),
@@ -35,7 +32,7 @@ def _study(value: Any) -> Any:
 
 
 if TYPE_CHECKING:
-    Over = Study | None
+    Over = Any
 else:
     Over = Annotated[Any, BeforeValidator(_study)]
     """Type of a field that holds a study: itself, its name, or a file."""

@@ -14,6 +14,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from navcore.foundation.inputs import read_bytes
+from navcore.foundation.kernel_digest import source_digest
 from navcore.foundation.out import HIDDEN, PathLike, refused, require_folder, utf8, whole, writing
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
@@ -260,7 +261,8 @@ def schema(plan: Plan) -> pa.Schema:
 def _identity(plan: Plan) -> str:
     """Text of ``study.toml``: the complete study, and what else its numbers depend on."""
     files = f", recordings {scenario_hash(plan.scenario)}" if names_files(plan.scenario) else ""
-    return f"# schuler-bench {__version__}{files}\n{to_toml(plan.study)}"
+    program = f"# schuler-bench {__version__}, sources {source_digest()}{files}"
+    return f"{program}\n{to_toml(plan.study)}"
 
 
 def _difference(before: str, after: str) -> str:

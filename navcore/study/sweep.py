@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
+from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.cores import cores
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
 from navcore.motion.sea import fully_developed_peak_period
 from navcore.motion.seagoing import SeagoingMotion
@@ -59,6 +61,55 @@ class Sweep:
     present: float = math.nan
     metrics: dict[str, tuple[tuple[float | None, ...], ...]] | None = None
     words: str = ""
+
+
+@dataclass(frozen=True)
+class Sweeps(Answer):
+    """Several quantities varied, one at a time.
+
+    Attributes
+    ----------
+    found : dict of Sweep
+        By key.
+    stopped : bool
+        It was cancelled: those that were done.
+    """
+
+    found: dict[str, Sweep]
+    stopped: bool = False
+
+    def document(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        return {
+            "sweeps": [
+                {
+                    "quantity": one.key,
+                    "values": list(one.values),
+                    "present": one.present if math.isfinite(one.present) else None,
+                    "metrics": {
+                        name: [list(row) for row in rows] for name, rows in (one.metrics or {}).items()
+                    },
+                    "not_varied": one.words or None,
+                }
+                for one in self.found.values()
+            ],
+            "stopped": self.stopped,
+        }
+
+    def rows(self) -> Iterator[Table | str]:
+        """Give for each quantity the tilt of every method at each of its values."""
+        for one in self.found.values():
+            if one.metrics is None:
+                yield Text("{key}: not varied: {words}", key=one.key, words=one.words)
+                continue
+            shown = one.metrics[SHOWN]
+            heads = [Column(one.key), *(Column(Text("method {k}", k=k)) for k in range(len(shown)))]
+            rows = zip(map(number, one.values), *shown, strict=True)
+            yield Table(tuple(heads), tuple(rows), SHOWN)
+
+
+SHOWN = "tilt_rms_arcsec"
+"""Metric of the tables; the document has all."""
 
 
 @dataclass(frozen=True)
@@ -162,6 +213,22 @@ def _factor(key: str, axis: _Axis, shown: tuple[float, ...]) -> Factor:
     if len(axis.fields) == 1:
         assigned = [one for (one,) in assigned]
     return Factor(name=key, field=axis.fields, values=(*assigned,), labels=(*map(repr, shown),))
+
+
+def sweeps(
+    scenario: Scenario,
+    keys: Sequence[str],
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Sweeps:
+    """Vary several quantities of a scenario, one at a time; parameters as of `sweep`."""
+    found: dict[str, Sweep] = {}
+    for place, key in enumerate(keys):
+        one = sweep(scenario, key, part_of(progress, place / len(keys), (place + 1) / len(keys)), cancelled)
+        if one is None:
+            return Sweeps(found, stopped=True)
+        found[key] = one
+    return Sweeps(found)
 
 
 def swept_factor(scenario: Scenario, key: str) -> Factor:

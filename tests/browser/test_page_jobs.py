@@ -245,7 +245,7 @@ def test_one_click_sweeps_four_quantities_and_a_change_makes_them_old(short: Ben
 @pytest.mark.slow
 def test_a_study_is_run_stopped_gone_on_with_and_its_worst_run_opened(short: Bench, tmp_path: Path) -> None:
     page, session = short.page, short.session
-    studier, before = session.searches.studier, session.scenario
+    studier, before = session.searches.asking["study"], session.scenario
     session.show(None, study_x="latitude", study_y="log_bias", study_seeds=20)
     short.tab("Study")
     page.get_by_text("Run the study: every point of the grid").wait_for()
@@ -254,12 +254,12 @@ def test_a_study_is_run_stopped_gone_on_with_and_its_worst_run_opened(short: Ben
     short.wait_until(lambda: (studier.fraction or 0.0) > 0.05, seconds=60.0)
     short.button(study.STOP).click()
     page.get_by_text("Stopped after").wait_for(timeout=30_000)
-    part = studier.result.document["runs"]
-    assert 0 < part < studier.result.document["of"] == int(re.findall("([0-9]+) runs", planned)[0])
+    part = studier.result.summary["runs"]
+    assert 0 < part < studier.result.summary["of"] == int(re.findall("([0-9]+) runs", planned)[0])
     short.button(study.GO_ON).click()
     short.wait_until(lambda: studier.result.complete, seconds=120.0)
     short.button(study.GO_ON).wait_for(state="hidden")
-    page.wait_for_function("cells => look.mapped() === cells", arg=len(studier.result.document["cells"]))
+    page.wait_for_function("cells => look.mapped() === cells", arg=len(studier.result.summary["cells"]))
     # another quantity, then the tables
     first = page.evaluate("look.written()")
     short.choose(study.METRIC, QUANTITIES["position_max_m"].label)
@@ -288,12 +288,12 @@ def test_a_study_is_run_stopped_gone_on_with_and_its_worst_run_opened(short: Ben
     short.upload(file)
     short.wait_until(lambda: session.display.study == "uploaded")
     short.button(study.RUN).click()
-    short.wait_until(lambda: studier.result.document["of"] == 2, seconds=60.0)
+    short.wait_until(lambda: studier.result.summary["of"] == 2, seconds=60.0)
     session.show(None, study="", study_shows="pictures")
 
 
 def study_of(session: Any) -> dict[str, Any]:
     """Summary of the method that the tab "Study" shows."""
-    document, wanted = session.searches.studier.result.document, session.display.study_method
+    document, wanted = session.searches.asking["study"].result.summary, session.display.study_method
     names = [one["name"] for one in document["methods"]]
     return document["methods"][names.index(wanted) if wanted in names else -1]

@@ -203,7 +203,7 @@ def test_what_was_asked_for_is_there_when_the_page_is_back(session: Session) -> 
     """All kinds alike: a break of a second, a reload, a laptop that sleeps."""
     page, back, gate = Watcher(), Watcher(), Gate()
     searches = all_searches(session)
-    assert len(searches) > 10 and {"studier", "sweeper", "envelopes", "verify", "pareto"} <= {*searches}
+    assert len(searches) > 10 and {"study", "sweeper", "envelopes", "verify", "pareto"} <= {*searches}
     session.attach(page)
     session.searches.watch(page.searches_changed)
     assert session.wait_idle(5.0)
@@ -246,7 +246,7 @@ def test_what_nobody_came_back_for_says_so(session: Session) -> None:
     page, gate = Watcher(), Gate()
     session.attach(page)
     assert session.wait_idle(5.0)
-    search: Any = session.searches.studier
+    search: Any = session.searches.asking["study"]
     search._carry_out, search._worker._load = carried_out_here(gate), lambda _: Load(Lane.SPARE)
     search.begin("what was asked")
     until(lambda: search._worker._watch is not None)

@@ -10,15 +10,16 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
+from navcore.questions.study import StudyQuestion
 from navcore.scenario.file import load
 from navcore.study.crossed import crossed
 from schuler_bench.bench.process import environment
 from schuler_bench.jobs.scheduler import Lane
-from schuler_bench.jobs.studier import StudyTask
 from schuler_bench.session import folder, store
 from schuler_bench.session.kept_study import keep_study
 from schuler_bench.session.sessions import Sessions
 from schuler_bench.session.store import open_store
+from schuler_bench.session.studying import left_of
 from tests.waiting import until
 
 ID = "a" * 24
@@ -38,15 +39,15 @@ def counted(plan, numbers, stopped):
 navcore.study.study.run_points, navcore.study.study._PART_S = counted, 0.0
 session = opened_sessions(Path(sys.argv[1])).get(ID)
 session.on_change()
-session.searches.studier.begin(task())
-session.searches.studier.wait_idle(60.0)
+session.searches.asking["study"].begin(task())
+session.searches.asking["study"].wait_idle(60.0)
 """
 
 
-def task() -> StudyTask:
+def task() -> StudyQuestion:
     """Three latitudes, two seeds each."""
     ship = load("sikuliaq-like", SHORT)
-    return StudyTask(crossed(ship, ["latitude"], 2), "", ship, ship)
+    return StudyQuestion(study=crossed(ship, ["latitude"], 2), scenario=ship, workers=1)
 
 
 def opened_sessions(path: Path) -> Sessions:
@@ -68,33 +69,33 @@ def test_the_parts_of_a_study_survive_a_killed_server(tmp_path: Path) -> None:
     assert subprocess.run(command, env=environment(), cwd=Path(__file__).parents[2]).returncode == -9
     sessions = opened_sessions(tmp_path)
     try:
-        studier = sessions.get(ID).searches.studier
+        studier = sessions.get(ID).searches.asking["study"]
         assert studier.result is not None and not studier.result.complete
-        left, before = studier.left, studier.result
-        assert left is not None and before.document["runs"] >= 2
-        assert left.present == task().present
+        left, before = left_of(studier), studier.result
+        assert left is not None and before.summary["runs"] >= 2
+        assert left.scenario == task().scenario
         studier.begin(left)  # the button that runs the rest
         assert studier.wait_idle(60.0) and studier.result.complete
         table = pq.read_table(io.BytesIO(studier.result.runs))
         kept = pq.read_table(io.BytesIO(before.runs))
         assert table.slice(0, len(kept)) == kept, "what was there is not run again"
-        assert sorted(set(table["run"].to_pylist())) == [*range(studier.result.document["of"])]
+        assert sorted(set(table["run"].to_pylist())) == [*range(studier.result.summary["of"])]
     finally:
         sessions.close()
     again = opened_sessions(tmp_path)
-    found = again.get(ID).searches.studier
-    assert found.result is not None and found.result.complete and found.left is None
+    found = again.get(ID).searches.asking["study"]
+    assert found.result is not None and found.result.complete and left_of(found) is None
     again.close()
 
 
 def test_another_study_takes_the_place_of_the_one_before(sessions: Sessions, tmp_path: Path) -> None:
-    studier = sessions.get(ID).searches.studier
+    studier = sessions.get(ID).searches.asking["study"]
     for seeds in (1, 2):
         ship = load("sikuliaq-like", SHORT)
-        studier.begin(StudyTask(crossed(ship, ["latitude"], seeds), "", ship, ship))
+        studier.begin(StudyQuestion(study=crossed(ship, ["latitude"], seeds), scenario=ship))
         assert studier.wait_idle(60.0) and studier.result is not None and studier.result.complete
         found = pq.read_table(tmp_path / f"{ID}.study" / "runs.parquet")
-        assert set(found["run"].to_pylist()) == {*range(studier.result.document["of"])}
+        assert set(found["run"].to_pylist()) == {*range(studier.result.summary["of"])}
 
 
 def test_what_cannot_be_read_is_left_out_and_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
@@ -102,17 +103,17 @@ def test_what_cannot_be_read_is_left_out_and_told(tmp_path: Path, caplog: pytest
     place.mkdir()
     (place / "study.toml").write_text("schema = 99\n")
     sessions = opened_sessions(tmp_path)
-    studier = sessions.get(ID).searches.studier
+    studier = sessions.get(ID).searches.asking["study"]
     assert studier.result is None and "cannot be resumed" in caplog.text and ID not in caplog.text
-    assert studier.place() == place and not [*place.iterdir()]
+    assert vars(studier.prepared(task()))["folder"] == place and not [*place.iterdir()]
     sessions.close()
 
 
 def test_a_study_on_a_cluster_is_not_sent_a_folder_of_the_server(tmp_path: Path) -> None:
-    from schuler_bench.jobs import studier as module
+    from schuler_bench.jobs.asking import Asker
     from schuler_bench.jobs.worker import Watch
 
-    studier, sent = module.Studier(lambda: None), list[StudyTask]()
+    studier, sent = Asker(lambda: None, StudyQuestion), list[StudyQuestion]()
     keep_study(studier, tmp_path / f"{ID}.study", "")
     for lane in (Lane.CLUSTER, Lane.SPARE):
         with pytest.MonkeyPatch.context() as patch:

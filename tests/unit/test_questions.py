@@ -16,6 +16,7 @@ from navcore.questions import QUESTIONS
 from navcore.questions.base import Question
 from navcore.questions.functions import function_of, name_of
 from navcore.questions.page import PAGE, written
+from navcore.study.file import studies
 from schuler_bench.cli.asking import command_of
 from schuler_bench.cli.parse import parse
 
@@ -28,7 +29,7 @@ def test_the_command_has_the_fields_and_no_other_list(id: str) -> None:
     question = QUESTIONS[id]
     names = {one.name for one in dataclasses.fields(command_of(question))}
     own = {question.subject, *(one.name for one in question.options())}
-    assert own <= names and names - own <= {"set", "out", "force", "json", "quiet"}
+    assert own <= names and names - own <= {"set", "out", "force", "scheduler", "json", "quiet"}
     assert ("out" in names) == bool(question.writes)
 
 
@@ -107,6 +108,7 @@ REQUIRED: dict[str, object] = {
     "scenario": "liu-networks",
     "objective": "settling_s",
     "vary": ["method.2.network.zeta"],
+    "study": next(iter(studies())),
 }
 
 

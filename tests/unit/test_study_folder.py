@@ -50,6 +50,17 @@ def begun(study: str, folder: Path, runs: int) -> None:
     assert len(stored(folder)) == 2 * document["runs"]
 
 
+def test_runs_of_other_sources_are_not_gone_on_with(study, tmp_path, capsys, monkeypatch):
+    """The version's name alone stood in study.toml: two states of a program mixed their runs."""
+    begun(study, tmp_path / "part", 5)
+    call = ["study", study, "--out", str(tmp_path / "part"), "--resume", "--json"]
+    with monkeypatch.context() as patch:
+        patch.setattr("navcore.study.results.source_digest", lambda: "0123")
+        assert main(call) == 2
+        assert "sources 0123 here" in capsys.readouterr().err
+    assert main(call) == 0
+
+
 def test_what_was_stopped_is_gone_on_with(study, tmp_path, capsys, monkeypatch):
     assert main(["study", study, "--out", str(tmp_path / "whole"), "--workers", "2", "--json"]) == 0
     whole = json.loads(capsys.readouterr().out)

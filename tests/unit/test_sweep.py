@@ -9,7 +9,7 @@ from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from navcore.study.model import OF_RUNS
 from navcore.study.sweep import KEYS, sweep
-from schuler_bench.jobs.sweeper import Sweeper
+from schuler_bench.jobs.sweeps import Sweeper
 from schuler_bench.plots.style import places
 from schuler_bench.views.sweep.figure import refusals, sweep_figure
 

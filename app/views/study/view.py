@@ -8,12 +8,21 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
-from schuler_bench.jobs.studier import StudyResult, StudyTask
+from navcore.questions.study import StudyQuestion
+from navcore.study.studied import Studied
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.plots.varied import SWEPT
 from schuler_bench.session.display import SWEPT as METRICS
 from schuler_bench.session.shown import Shown
-from schuler_bench.session.studying import NOTHING, PRESENT, UPLOADED, chosen_task, planned, run_scenario
+from schuler_bench.session.studying import (
+    NOTHING,
+    PRESENT,
+    UPLOADED,
+    chosen_task,
+    left_of,
+    planned,
+    run_scenario,
+)
 from schuler_bench.shell import notices
 from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
 from schuler_bench.shell.number_box import NumberBox
@@ -43,13 +52,14 @@ class StudyView(PlotlyView):
     group = "decide"
     look_for = Text("How a method fares over a grid of conditions and many seeds, and where it fails.")
     plots = (title,)
+    asks = ("study",)
     above_px = 3 * CHOOSER_PX
 
     def __init__(self, frame: Frame) -> None:
         from navcore.study.file import studies
 
         super().__init__(frame)
-        self._studier = frame.session.searches.studier
+        self._studier = frame.session.searches.asking["study"]
         self._studies, self._drawn = tuple(studies()), None
         self._planned: tuple[object, str] = (None, "")
         frame.commands.register("study", lambda _: self._begin(), RUN)
@@ -142,11 +152,11 @@ class StudyView(PlotlyView):
         reveal(
             *((box, own) for box in (self._over, self._and_over, self._seeds)),
             *((box, there) for box in (self._metric, self._method, self._shows)),
-            (self._on, self._studier.left is not None and not running),
+            (self._on, left_of(self._studier) is not None and not running),
         )
         words = [*self._studier.words]
         if found is not None and not found.complete and not running:
-            done, whole = found.document["runs"], found.document["of"]
+            done, whole = found.summary["runs"], found.summary["of"]
             words.append(Text("Stopped after {done} of {whole} runs.", done=done, whole=whole))
         show_html(self._words, notices.note(words, "warning"))
 
@@ -165,14 +175,14 @@ class StudyView(PlotlyView):
     # ------------------------------------------------------------ results
 
     @property
-    def _found(self) -> StudyResult | None:
+    def _found(self) -> Studied | None:
         return self._studier.result
 
     @property
     def _document(self) -> dict[str, Any]:
         """Summary of the last study; empty while there is none with a run."""
         found = self._found
-        return found.document if found is not None and found.document["methods"] else {}
+        return found.summary if found is not None and found.summary["methods"] else {}
 
     @property
     def _shown_metric(self) -> str:
@@ -199,7 +209,7 @@ class StudyView(PlotlyView):
         del both
         document, kept = self._document, found.display.places
         task = self._studier.asked
-        old = task is not None and task.present not in (None, found.run.scenario)
+        old = task is not None and task.scenario not in (None, found.run.scenario)
         note = _OLD if old else ""
         series = document.get("methods", [{}])[0].get("series")
         if series and not document.get("cells"):
@@ -256,13 +266,13 @@ class StudyView(PlotlyView):
 
     def _go_on(self) -> None:
         """Run what is missing of the study that was stopped."""
-        left = self._studier.left
+        left = left_of(self._studier)
         if left is not None:
             self._studier.begin(left)
 
     def _open(self, text: str) -> None:
         """Open the scenario of one run."""
-        task: StudyTask | None = self._studier.asked
+        task: StudyQuestion | None = self._studier.asked
         if task is None:
             return
         session = self.session
@@ -276,7 +286,7 @@ class StudyView(PlotlyView):
             name = Text("run {number} of the study", number=int(text))
             names = [method.name for method in scenario.method]
             at = names.index(self._shown_method) if self._shown_method in names else 0
-            origin = None if task.present is not None else task.where
+            origin = None if task.scenario is not None else task.where
             session.change(scenario, None, origin=origin, selected=at, name=name)
 
 

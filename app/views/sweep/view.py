@@ -28,6 +28,7 @@ class SweepView(PlotlyView):
     group = "decide"
     look_for = Text("How each method fares at other latitudes, log errors, sensor grades and sea states.")
     plots = (title,)
+    asks = ("sweep",)
     above_px = 2 * CHOOSER_PX
 
     def __init__(self, frame: Frame) -> None:
