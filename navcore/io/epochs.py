@@ -30,6 +30,8 @@ def numeric_times(where: str, column: Column, values: np.ndarray) -> tuple[np.nd
             return found
     if column.stem == UNIX and not column.unit:
         return unix_by_size(values), True, []
+    if column.stem == SECONDS and not column.unit:
+        return values, False, []
     try:
         found = read_counts(values, column.unit or ("s" if column.stem == SECONDS else ""))
     except Ambiguous as either:

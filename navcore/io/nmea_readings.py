@@ -10,7 +10,7 @@ from navcore.foundation.text import Text
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import Sentences, Tally
 from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, OTHER_MESSAGE, decode
-from navcore.io.times.between import are_doubled, coarse, filled, trusted
+from navcore.io.times.between import are_doubled, by_kind, coarse, filled, trusted
 from navcore.io.times.doubts import trust_of
 from navcore.io.times.steps import back_advice, without_leap_step
 
@@ -207,7 +207,7 @@ class Gathered:
         turn = np.cumsum(
             given & (np.concatenate([[1.0], np.diff(filled(rows["time_s"], -rows["kind"] - 1)[0])]) != 0.0)
         )
-        order = np.argsort(rows["channel"], kind="stable")
+        order = by_kind(rows["channel"])
         same = np.concatenate([[False], np.diff(rows["channel"][order]) == 0])
         for column in (turn, rows["id"]):
             same[1:] &= np.diff(column[order]) == 0
@@ -217,7 +217,7 @@ class Gathered:
 
     def _late(self, rows: np.ndarray) -> np.ndarray:
         """Which times run backwards; they and those within the jitter are counted."""
-        order = np.argsort(rows["channel"], kind="stable")
+        order = by_kind(rows["channel"])
         order = order[np.searchsorted(rows["channel"][order], 0) :]
         order = order[~np.isnan(rows["time_s"][order])]
         starts = np.flatnonzero(np.diff(rows["channel"][order])) + 1

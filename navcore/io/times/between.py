@@ -58,6 +58,12 @@ def trusted(time_s: np.ndarray, doubtful: np.ndarray) -> np.ndarray:
     return found
 
 
+def by_kind(kinds: np.ndarray) -> np.ndarray:
+    """Places of lines sorted by kind, each in its order, shape (n,); short numbers sort faster."""
+    few = kinds.size and kinds.max() < np.iinfo(np.int16).max
+    return np.argsort(kinds.astype(np.int16) if few else kinds, kind="stable")
+
+
 def coarse(time_s: np.ndarray, kinds: np.ndarray, ids: np.ndarray) -> np.ndarray:
     """Which lines bear a stamp that is coarser than their kind: the same as the line of their kind before.
 
@@ -75,7 +81,7 @@ def coarse(time_s: np.ndarray, kinds: np.ndarray, ids: np.ndarray) -> np.ndarray
     """
     found = np.zeros(time_s.size, bool)
     rows = np.flatnonzero(~np.isnan(time_s) & (kinds >= 0))
-    rows = rows[np.argsort(kinds[rows], kind="stable")]
+    rows = rows[by_kind(kinds[rows])]
     again = (np.diff(kinds[rows]) == 0) & (np.diff(time_s[rows]) == 0.0)
     differing = again & (np.diff(ids[rows]) != 0)
     coarse_kinds = np.unique(kinds[rows[1:]][differing])
@@ -86,7 +92,7 @@ def coarse(time_s: np.ndarray, kinds: np.ndarray, ids: np.ndarray) -> np.ndarray
 def are_doubled(time_s: np.ndarray, kinds: np.ndarray, ids: np.ndarray) -> bool:
     """Whether most lines that give a time are there twice, as after two loggers were joined; shapes (n,)."""
     rows = np.flatnonzero(~np.isnan(time_s) & (kinds >= 0))
-    rows = rows[np.argsort(kinds[rows], kind="stable")]
+    rows = rows[by_kind(kinds[rows])]
     if rows.size < _FEWEST_DOUBLED:
         return False
     same = (np.diff(kinds[rows]) == 0) & (np.diff(time_s[rows]) == 0.0) & (np.diff(ids[rows]) == 0)
@@ -122,7 +128,7 @@ def filled(time_s: np.ndarray, kinds: np.ndarray) -> tuple[np.ndarray, int]:
     turn_of = np.zeros(time_s.size, int)
     turn_of[given] = turns
     steps = np.append(np.diff(starts), np.nan)
-    waiting = waiting[np.argsort(kinds[waiting], kind="stable")]
+    waiting = waiting[by_kind(kinds[waiting])]
     kind, turn = kinds[waiting], turn_of[last[waiting]]
     first = np.concatenate([[True], (np.diff(kind) != 0) | (np.diff(turn) != 0)])
     group = np.cumsum(first) - 1
