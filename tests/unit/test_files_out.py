@@ -9,16 +9,15 @@ from typing import Any
 
 import pytest
 
-from navcore.foundation import out
-from navcore.foundation.errors import InputError
 from navcore.foundation.inputs import noting
-from navcore.foundation.out import placing, require_file, require_folder, signed, write_file, written_by
+from navcore.foundation.out import signed, written_by
 from navcore.io.column_map import read_map
 from navcore.scenario.file import load
 from navcore.scenario.reads import recordings
 from navcore.study.file import load as load_study
 from navcore.study.file import recordings as of_study
 from schuler_bench.cli import main
+from tests.folders import contents
 
 SHIP = """schema = 1
 [run]
@@ -79,12 +78,6 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name, text in {"ship.toml": SHIP, "study.toml": STUDY, "log.csv": LOG, "notes.md": "years"}.items():
         (tmp_path / name).write_text(text)
     return tmp_path
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    """Content of each file in a folder and below, where links lead."""
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
 def refusal(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
@@ -278,86 +271,6 @@ def test_a_map_of_a_file_with_an_odd_name_is_toml(here: Path) -> None:
     assert read_map("map.toml").quantity
 
 
-# ---------------------------------------------------------------- the mechanism of folders
-
-
-def fill(hidden: Path, text: str) -> None:
-    for name in ("a.json", "b.json"):
-        (hidden / name).write_text(text)
-
-
-def test_all_files_take_their_names_or_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = ("a.json", "b.json")
-    with placing(tmp_path / "new" / "out", names) as hidden:
-        fill(hidden, "first")
-        assert not (tmp_path / "new" / "out" / "a.json").exists()
-    folder = tmp_path / "new" / "out"
-    replace = os.replace
-
-    def full(source: Any, target: Any) -> None:
-        if Path(target).name == "b.json" and ".schuler-" in str(source) and "earlier" not in str(source):
-            raise OSError(28, "No space left on device")
-        replace(source, target)
-
-    monkeypatch.setattr(out.os, "replace", full)
-    with (
-        pytest.raises(InputError, match="cannot be written: No space left"),
-        placing(folder, names) as hidden,
-    ):
-        fill(hidden, "second")
-    assert contents(folder) == {"a.json": b"first", "b.json": b"first"}
-    with pytest.raises(InputError, match="No space"), placing(tmp_path / "none", names) as hidden:
-        raise OSError(28, "No space left on device")
-    assert not (tmp_path / "none").exists()
-
-
-def test_what_a_kill_has_left_is_removed_and_what_is_in_use_is_not(tmp_path: Path) -> None:
-    (tmp_path / f"{out.HIDDEN}dead").mkdir()
-    (tmp_path / f"{out.HIDDEN}dead" / "a.json").write_text("half")
-    with placing(tmp_path, ("a.json", "b.json")) as first:
-        fill(first, "first")
-        with placing(tmp_path, ("a.json", "b.json")) as second:
-            fill(second, "second")
-        assert first.is_dir()
-    assert contents(tmp_path) == {"a.json": b"first", "b.json": b"first"}
-    assert [path.name for path in sorted(tmp_path.iterdir())] == ["a.json", "b.json"]
-
-
-def test_what_comes_into_the_way_meanwhile_is_left(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="is a folder"), placing(tmp_path, ("a.json", "b.json")) as hidden:
-        fill(hidden, "x")
-        (tmp_path / "b.json").mkdir()
-    assert [path.name for path in tmp_path.iterdir()] == ["b.json"]
-
-
-def test_files_have_the_rights_that_the_user_gives(tmp_path: Path) -> None:
-    before = os.umask(0o077)
-    try:
-        with placing(tmp_path / "out", ("a.json", "b.json")) as hidden:
-            fill(hidden, "x")
-        write_file(tmp_path / "best.toml", "x = 1\n", "tune")
-    finally:
-        os.umask(before)
-    for path in (tmp_path / "out" / "a.json", tmp_path / "best.toml"):
-        assert path.stat().st_mode & 0o777 == 0o600
-
-
-def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Asked of the system, which also knows of disks that are mounted for reading."""
-    (tmp_path / "mine").mkdir()
-    monkeypatch.setattr(out.os, "access", lambda path, mode: Path(path) != tmp_path / "mine")
-    for ask in (
-        lambda: require_folder(tmp_path / "mine", ["a"]),
-        lambda: require_folder(tmp_path / "mine" / "x" / "y", ["a"]),
-        lambda: require_file(tmp_path / "mine" / "a.toml", "tune"),
-    ):
-        with pytest.raises(InputError, match="cannot be written: .*mine is write-protected"):
-            ask()
-    require_folder(tmp_path / "other", ["a"])
-
-
 # ---------------------------------------------------------------- single files
 
 
@@ -430,39 +343,3 @@ def test_all_that_a_search_reads_is_kept(here: Path, capsys: pytest.CaptureFixtu
     told = refusal([*DESIGN, "--over", "study.toml", "--out", "design"], capsys)
     assert "is read by this command" in told
     assert contents(here / "design") == {"design.json": STUDY.encode()}
-
-
-def test_a_full_disk_leaves_the_earlier_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    target = tmp_path / "best.toml"
-    write_file(target, "x = 1\n", "tune")
-    before = target.read_bytes()
-
-    def full(_: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(out.os, "fsync", full)
-    with pytest.raises(InputError, match="--out = .*: cannot be written: No space left on device"):
-        write_file(target, "x = 2\n", "tune")
-    assert contents(tmp_path) == {"best.toml": before}
-
-
-def test_a_file_is_known_by_a_comment_of_its_own_format(tmp_path: Path) -> None:
-    page = tmp_path / "report.html"
-    page.write_text(f"<!DOCTYPE html>\n{signed('', 'report', '<!-- {} -->')}<p>text</p>\n")
-    assert not written_by("report", page)  # the digest is of all other lines
-    write_file(tmp_path / "page.html", "<p>text</p>\n", "report", comment="<!-- {} -->")
-    assert written_by("report", tmp_path / "page.html")
-    assert not written_by("export", tmp_path / "page.html")
-
-
-def test_names_differ_by_the_file_system_alone(tmp_path: Path) -> None:
-    """``Scenario.toml`` is the run's own file only where the file system does not tell letters apart."""
-    (tmp_path / "Scenario.toml").write_text("x")
-    same = (tmp_path / "scenario.toml").exists()
-    try:
-        require_folder(tmp_path, ["scenario.toml"], [tmp_path / "Scenario.toml"])
-    except InputError:
-        assert same
-    else:
-        assert not same
-    require_file(tmp_path / "new.toml", "tune", ["a\0b", "x" * 5000])
