@@ -1,9 +1,8 @@
-"""Visitors of the soak, each kind a function for a process of its own: people, browsers, attackers."""
+"""Visitors of the soak, each kind a function for a process of its own: people and browsers."""
 
 from __future__ import annotations
 
 import html
-import itertools
 import multiprocessing
 import random
 import re
@@ -21,22 +20,16 @@ from navcore.engine.measures import metrics as measured
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, parse_toml
 from navcore.scenario.model import Scenario
-from schuler_bench.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
-from schuler_bench.views.appearance.view import BANDS
-from schuler_bench.views.tune.finder import FIND
-from schuler_bench.views.tune.view import SEARCH_FOR
-from tests.browser.fields import box_labels, label_of
+from schuler_bench.bench.visitor import PAGE_PAINTED, PAGE_STATE, Visitor
+from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
-    from multiprocessing.synchronize import Barrier, Event
+    from multiprocessing.synchronize import Barrier
 
 WINDOW = "1920x1080|Method|Frequency|Errors|Scenario"
 ANSWER_S = 30.0
-ZETA, DURATION = label_of("network.zeta"), box_labels("run.duration_h")[0]
-LONG_RUN_H = 300.0
-"""Some seconds of computing, within the memory that a run may take."""
+ZETA = label_of("network.zeta")
 _PER_PROCESS = 8
-_SEARCH_S = (20, 10, 10, 5)  # after so long each search is begun anew
 _RECOMPUTED_EVERY, _RECOMPUTED_FIRST = 25, 7
 _ZETA = re.compile(r"zeta = ([0-9.]+)")
 _PRE = re.compile(r"<pre[^>]*>(.*)</pre>", re.DOTALL)
@@ -249,92 +242,6 @@ def crowds(
             name, theirs = results.get(timeout=order.seconds + 4.0 * ANSWER_S)
             seen[name].add(theirs)
     return seen["person"], seen["browser"]
-
-
-# ---------------------------------------------------------------- those who take what they can
-
-
-def flood_of_a_slider(port: int, number: int, ended: Event) -> None:
-    """Moves a slider as fast as the connection takes it, without waiting for any answer."""
-    _flood(port, number, ended, ZETA, lambda step: round(0.5 + 0.0001 * (step % 3000), 4))
-
-
-def flood_of_commands(port: int, number: int, ended: Event) -> None:
-    """Asks for another run as often as the connection takes it."""
-    _flood(port, number, ended, PAGE_COMMAND, lambda step: f'[[{step},"run",""]]')
-
-
-def _flood(port: int, number: int, ended: Event, label: str, value: Callable[[int], Any]) -> None:
-    with opened(port, number) as visitor:
-        visitor.control(label)
-        steps = itertools.count(1)
-        while not ended.is_set():
-            for step in itertools.islice(steps, 50):
-                visitor.set(label, value(step))
-            visitor.rest(0.05)
-
-
-def long_runs(port: int, number: int, ended: Event, count: int = 10) -> None:
-    """Some visitors whose every run takes long, and who start it again and again."""
-
-    def one(place: int) -> None:
-        time.sleep(0.1 * place)
-        with opened(port, number + place) as visitor:
-            visitor.set(DURATION, LONG_RUN_H)
-            visitor.rest(1.0)
-            if visitor.notices:
-                raise RuntimeError(f"the long run was refused: {visitor.notices[0]}")
-            step = 0
-            while not ended.is_set():
-                visitor.rest(3.0)
-                step += 1
-                visitor.set(ZETA, round(0.5 + 0.001 * (step % 300), 3))
-
-    with ThreadPoolExecutor(count) as threads:
-        list(threads.map(one, range(count)))
-
-
-def searches(port: int, number: int, ended: Event) -> None:
-    """Visitors who search in loops, one for each search: fronts, setting, verification, bands."""
-
-    def one(place: int) -> None:
-        with opened(port, number + place) as visitor:
-            if place == 0:
-                visitor.set(str(SEARCH_FOR), "Pareto fronts")
-            if place == 3:
-                visitor.set(str(BANDS), "20 seeds, 5 to 95 %")
-            for step in itertools.count(1):
-                if place == 0:
-                    visitor.set(str(FIND), True)
-                elif place == 3:
-                    visitor.set(ZETA, round(0.5 + 0.001 * (step % 300), 3))
-                else:
-                    visitor.ask(("tune", "verify")[place - 1])
-                for _ in range(_SEARCH_S[place]):
-                    visitor.rest(1.0)
-                    if ended.is_set():
-                        return
-
-    with ThreadPoolExecutor(len(_SEARCH_S)) as threads:
-        list(threads.map(one, range(len(_SEARCH_S))))
-
-
-def studies(port: int, number: int, ended: Event) -> None:
-    """A visitor who runs the study of the scenario over two quantities, again and again."""
-    with opened(port, number) as visitor:
-        while not ended.wait(0.0):
-            visitor.ask("study")
-            visitor.rest(12.0)
-
-
-def left_behind(port: int, number: int, ended: Event) -> None:
-    """Visitors who begin a study or a verification and leave, one after the other; nobody comes back."""
-    for step in itertools.count():
-        with opened(port, number + step) as visitor:
-            visitor.ask(("study", "verify")[step % 2])
-            visitor.rest(1.0)
-        if ended.wait(1.0):
-            return
 
 
 def long_under_way(port: int) -> float:

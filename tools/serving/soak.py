@@ -25,6 +25,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from schuler_bench.bench.process import Server
+from tools.serving.attackers import (
+    flood_of_a_slider,
+    flood_of_commands,
+    left_behind,
+    long_runs,
+    searches,
+    studies,
+)
 from tools.serving.load import (
     Order,
     Seen,
@@ -32,14 +40,8 @@ from tools.serving.load import (
     connects,
     crowds,
     dragging,
-    flood_of_a_slider,
-    flood_of_commands,
-    left_behind,
-    long_runs,
     long_under_way,
     pausing,
-    searches,
-    studies,
 )
 from tools.serving.table import machine
 
