@@ -58,7 +58,9 @@ def designs(
     --------
     >>> from navcore import designs, load
     >>> limit = ["requirement.0.quantity=velocity_rms_mps", "requirement.0.at_most=0.5"]
-    >>> found = designs(load("zha-fast", ["run.duration_h=1"]), 4, as_set=True)  # doctest: +SKIP
+    >>> found = designs(load("zha-fast", ["run.duration_h=1", *limit]), 4, as_set=True)
+    >>> found.seeds, len(found.methods)
+    (4, 3)
     """
     require_limits(scenario)
     if seeds < 1:

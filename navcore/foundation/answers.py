@@ -123,8 +123,7 @@ class Answer:
 
     def assumptions(self) -> Iterator[str]:
         """Give a sentence on what was assumed; none where nothing was."""
-        if self.assumed_zero:
-            yield Text("note: 0 is assumed for {fields}", fields=", ".join(self.assumed_zero))
+        return assumptions(self.assumed_zero)
 
     def lines(self) -> list[str]:
         """Lines for a terminal; an empty one stands above each table."""
@@ -144,6 +143,12 @@ class Answer:
     def _repr_html_(self) -> str:
         """Tables for a notebook."""
         return str(self.html())
+
+
+def assumptions(fields: Sequence[str]) -> Iterator[str]:
+    """Give a sentence on the fields of a scenario that count as 0; none where there are none."""
+    if fields:
+        yield Text("note: 0 is assumed for {fields}", fields=", ".join(fields))
 
 
 def _sentence(text: str) -> Text:

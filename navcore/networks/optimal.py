@@ -180,8 +180,9 @@ class OptimalNetwork(NetworkParameters):
         """
         figures, warnings = self.figures()
         try:
-            law = _law(figures, self.rho, self.q, self.realisation == "feedback", omega_s)
-        except np.linalg.LinAlgError:
+            with np.errstate(all="ignore"):  # of densities whose squares are no numbers any more
+                law = _law(figures, self.rho, self.q, self.realisation == "feedback", omega_s)
+        except (np.linalg.LinAlgError, FloatingPointError):
             raise refuse(
                 "rho", self.rho, Text("the Riccati equations of these figures have no solution")
             ) from None
@@ -233,7 +234,9 @@ class OptimalNetwork(NetworkParameters):
         systems = state_spaces(nums, poles)
         states = _responses(p, systems[0].A, systems[0].B)
         numerators = [states @ system.C + system.D for system in systems]
-        if any(np.max(np.abs(f - e) / np.abs(e)) > _ACCURACY for f, e in zip(numerators, exact, strict=True)):
+        # of a product: 0/0 is no deviation, and what is no number does not agree with anything
+        pairs = zip(numerators, exact, strict=True)
+        if not all(np.all(np.abs(f - e) <= _ACCURACY * np.abs(e)) for f, e in pairs):
             allowed = Text(
                 "makes a network too fast for these figures to run in double precision: must be larger"
             )
@@ -242,7 +245,12 @@ class OptimalNetwork(NetworkParameters):
 
 @lru_cache(maxsize=256)
 def _law(figures: SensorFigures, rho: float, q: float, feedback: bool, omega_s: float) -> Compensator:
-    law = compensator(plant(figures, omega_s).excited(), rho, q, feedback)
+    try:
+        law = compensator(plant(figures, omega_s).excited(), rho, q, feedback)
+    except ValueError as error:  # scipy's word for a matrix with infinities
+        raise FloatingPointError(str(error)) from None
+    if not all(np.all(np.isfinite(part)) for part in (law.A, law.B, law.C, law.E)):
+        raise FloatingPointError("the law is not finite")
     if np.max(np.real(np.linalg.eigvals(law.A))) >= 0.0:  # which has no balanced truncation
         raise refuse("rho", rho, _UNSTABLE)
     return law.reduced(MAX_ORDER)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 
 from navcore.alignment.loop import LARGEST_LATITUDE_DEG
 from navcore.averaging.record import under_way
+from navcore.damping.base import Damping
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.fields import ScenarioFields
 
@@ -17,6 +18,12 @@ def need_faults(scenario: ScenarioFields) -> Iterator[Fault]:
         for fault in _UNMET[need.of](scenario, Fault("", f"method.{i}.damping", method.damping, need.because))
     )
     yield from dict.fromkeys(faults)
+
+
+def meets(scenario: ScenarioFields, kind: Damping) -> bool:
+    """Whether a scenario gives what a kind of damping needs."""
+    unmet = (_UNMET[need.of](scenario, Fault("", "", None, need.because)) for need in kind.needs)
+    return not any(True for faults in unmet for _ in faults)
 
 
 def _unless(met: Callable[[ScenarioFields], bool]) -> Callable[[ScenarioFields, Fault], Iterator[Fault]]:

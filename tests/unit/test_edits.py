@@ -148,17 +148,18 @@ def test_events_come_and_go(scenario: Scenario) -> None:
 def test_a_gyrocompass_comes_and_goes_and_takes_the_place_of_an_azimuth_network(scenario: Scenario) -> None:
     path = ("method", 1, "gyrocompass")
     whole = edits.with_choice(scenario, ("method", 1, "azimuth", "id"), "unity2")
-    shown = [spec.path[-2:] for spec in azimuth_fields(whole.method[1], ("method", 1))]
+    shown = [spec.path[-2:] for spec in azimuth_fields(whole, 1)]
     assert shown[:2] == [(1, "gyrocompass"), ("azimuth", "id")] and ("azimuth", "zeta") in shown
-    compass = edits.with_value(whole, path, True).method[1]
+    north = edits.with_value(whole, path, True)
+    compass = north.method[1]
     assert (compass.azimuth.id, compass.gyrocompass) == ("none", Gyrocompass())
-    shown = [spec.path[-1] for spec in azimuth_fields(compass, ("method", 1))]
+    shown = [spec.path[-1] for spec in azimuth_fields(north, 1)]
     assert shown == ["gyrocompass", "sigma", "xi"]
     slower = edits.with_value(edits.with_value(whole, path, True), (*path, "sigma"), 0.001)
     assert slower.method[1].gyrocompass == Gyrocompass(sigma=0.001)
     assert edits.with_value(slower, path, False).method[1].gyrocompass is None
-    inner = edits.with_value(whole, ("method", 1, "damping"), "internal").method[1]
-    assert azimuth_fields(inner, ("method", 1))[0].path[-1] == "id"
+    inner = edits.with_value(whole, ("method", 1, "damping"), "internal")
+    assert azimuth_fields(inner, 1)[0].path[-1] == "id"
 
 
 def test_a_method_that_averages_is_named_after_its_variant() -> None:

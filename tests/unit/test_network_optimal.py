@@ -1,6 +1,7 @@
 """The optimal network: whose sensors it is designed for, what it warns of, that it runs everywhere."""
 
 import json
+import math
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from navcore.design.budget import budget
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
-from navcore.networks import MAX_ORDER, parse_network
+from navcore.networks import MAX_ORDER, optimal, parse_network
 from navcore.networks.lqg import Compensator, compensator, plant
 from navcore.networks.optimal import EXAMPLE_SHIP, modulus_margin
 from navcore.scenario.file import load, parse_toml, to_toml
@@ -265,3 +266,25 @@ def test_the_page_shows_the_figures_that_it_takes_from_the_scenario() -> None:
     taken = network.taken()
     assert taken["gyro_arw_dpsh"] == pytest.approx(imu.gyro_arw_dpsh)
     assert taken["log_drift_mps"] == pytest.approx(log.drift_mps) and "log_noise_mps" not in taken
+
+
+@pytest.mark.parametrize("realisation", ["network", "feedback"])
+@pytest.mark.parametrize("noise", [1e-150, 1e-155, 1e-158, 1e-160, 1e-162])
+def test_almost_no_noise_gives_a_network_or_is_refused(noise: float, realisation: str) -> None:
+    """The squares of such densities are no numbers: an overflow went on, and NaN > accuracy is false."""
+    text = {"id": "optimal", "rho": 1e-3, "q": 1.0, "realisation": realisation, "log_noise_mps": noise}
+    try:
+        network = parse_network(text).transfer(OMEGA_S)
+    except InputError as refused:
+        assert "rho = 0.001" in str(refused)
+    else:
+        assert np.all(np.isfinite(network.poles)) and math.isfinite(network.h0)
+
+
+def test_a_numerator_that_is_no_number_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """0/0 in the check of the accuracy passed it."""
+    parameters = parse_network({"id": "optimal", "rho": 1e-3})
+    real = optimal._responses
+    monkeypatch.setattr(optimal, "_responses", lambda p, A, B: real(p, A, B) * math.nan)
+    with pytest.raises(InputError, match="too fast for these figures"):
+        parameters.transfer(OMEGA_S)

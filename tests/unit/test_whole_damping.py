@@ -1,23 +1,28 @@
 """Whole damping: a network in the azimuth channel (at-sea eigenvalues, closed forms, both fidelities)."""
 
 import math
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import whole_system
+from navcore.damping.internal import Internal
 from navcore.engine.drivers.batch import run_batches
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE, SPHERE
 from navcore.foundation.errors import InputError
+from navcore.foundation.parameters import Parameters, quantity
 from navcore.foundation.units import ARCMIN, DEG
 from navcore.networks import parse_network
 from navcore.networks.azimuth_loop import azimuth_gains
 from navcore.quantities import NAMES
+from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.edits import with_choice
+from schuler_bench.views.method.view import azimuth_fields, own_fields
 
 COMPLEMENTARY, UNITY2 = {"id": "complementary", "zeta": 0.5, "eta": 0.5}, {"id": "unity2", "zeta": 0.5}
 
@@ -279,3 +284,28 @@ def test_the_whole_system_with_a_gyrocompass_has_its_poles_and_the_sampled_law_a
             made(method, hours=12.0, reference={"rate_hz": 1.0 / period_s}, initial_error=start)
         ).methods
         assert (run.status, growth > 0.0) == (status, status == "diverged")
+
+
+def test_the_page_offers_an_azimuth_network_where_one_can_be_chosen() -> None:
+    """In the fidelity "channel" it offered eight, and refused each of them."""
+    of_channels, whole = load("zha-fast"), load("sikuliaq-like")
+    assert of_channels.run.fidelity == "channel" and azimuth_fields(of_channels, 2) == []
+    offered = {spec.path[-2:] for spec in azimuth_fields(whole, 2)}
+    assert ("azimuth", "id") in offered
+    chosen = with_choice(whole, ("method", 2, "azimuth", "id"), "unity2")
+    assert {spec.path[-1] for spec in azimuth_fields(chosen, 2)} > {"id", "zeta"}
+
+
+def test_parameters_of_a_kind_s_own_have_controls() -> None:
+    """They had some only where the kind named itself among the blocks, which no recipe says."""
+
+    class Delay(Parameters):
+        delay_s: float = quantity(3.0, unit="s", ge=0.0, le=60.0, slider=(0.0, 10.0), label="delay")
+
+    class Delayed(Internal):
+        id: ClassVar[str] = "delayed"
+        settings: ClassVar[type[Parameters] | None] = Delay
+
+    (spec,) = own_fields(Delayed(), ("method", 1))
+    assert spec.path == ("method", 1, "delayed", "delay_s") and spec.label == "delay (s)"
+    assert own_fields(Internal(), ("method", 1)) == []

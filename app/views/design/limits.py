@@ -11,7 +11,9 @@ from navcore.design.judged import Designs
 from navcore.design.measures import Setting
 from navcore.design.shares import Limit
 from navcore.design.ship import Ship
+from navcore.design.stated import assumed_zero
 from navcore.engine.run import Run
+from navcore.foundation.answers import assumptions
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, limit_unit
@@ -108,7 +110,8 @@ def designs_html(
         body += [_title(_robust_title(found)), *map(_line, _robust_lines(run, found))]
     limits = limits_of(run.scenario.requirement)
     words = Text.joined(", ", (limit_words(key, limit, short_label(key)) for key, limit in limits.items()))
-    said = Text("Limits: {asked}.", asked=words)
+    assumed = found.assumptions() if found is not None else assumptions(assumed_zero(run.scenario))
+    said = Text.joined(" ", (Text("Limits: {asked}.", asked=words), *assumed))
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
 

@@ -5,7 +5,9 @@ from typing import Any
 from navcore.design.budget import Budget
 from navcore.design.judged import Designs
 from navcore.design.shares import Share
+from navcore.design.stated import assumed_zero
 from navcore.engine.run import Run
+from navcore.foundation.answers import assumptions
 from navcore.foundation.text import Text
 from navcore.questions.budget import BudgetQuestion
 from navcore.questions.design import DesignQuestion
@@ -155,6 +157,10 @@ class DesignView(PlotlyView):
         super().show(picture)
         run = self.session.run
         html = limits_wanted() if picture and self.session.display.budget == "limits" else ""
+        if picture and run is not None:
+            steady = self.session.display.budget != "run"
+            said = (notices.small(text) for text in assumptions(assumed_zero(run.scenario, steady)))
+            html = Text.joined("", (html, *said))
         if not picture and run is not None:
             self._judge.judge(run.scenario)
             note = notices.note((*self._judge.words, *self._limits.words), "warning")

@@ -5,6 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 from navcore.analysis.loop import velocity_settling
+from navcore.damping import WHOLE
+from navcore.damping.base import Damping
 from navcore.damping.gyrocompass import Gyrocompass
 from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
@@ -14,6 +16,7 @@ from navcore.law.switching import SWITCHINGS
 from navcore.networks import NETWORKS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.needs import meets
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec, Path
 from schuler_bench.plots.effective import earth_mode_text
@@ -143,8 +146,8 @@ class MethodView(View):
         self._show_chips()
         method, path = scenario.method[index], ("method", index)
         values = _values(scenario, index)
-        own_fields = [spec for spec in form.fields(Method, path) if spec.path[-1] != "name"]
-        self.sections["method"].show(own_fields, values, moved)
+        of_method = [spec for spec in form.fields(Method, path) if spec.path[-1] != "name"]
+        self.sections["method"].show(of_method, values, moved)
         blocks = method.kind.blocks
         network = [described(spec, method) for spec in form.fields(type(method.network), (*path, "network"))]
         self.sections["network"].show(
@@ -155,10 +158,9 @@ class MethodView(View):
         for part in ("policy", "switching"):
             specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
             self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
-        slow = azimuth_fields(method, path) if "azimuth" in blocks else []
+        slow = azimuth_fields(scenario, index)
         self.sections["azimuth"].show(slow, _values_at(scenario, slow), moved)
-        own = method.kind.settings if method.damping in blocks else None
-        block = form.fields(own, (*path, method.damping)) if own else []
+        block = own_fields(method.kind, path)
         self.sections["settings"].show(block, _values_at(scenario, block), moved)
         last_gain = self.sections["parameters"].controls.get((*path, "network", "k3"))
         if last_gain is not None:
@@ -193,8 +195,21 @@ def described(spec: FieldSpec, method: Method) -> FieldSpec:
     return replace(spec, hint=hint) if reason else spec
 
 
-def azimuth_fields(method: Method, path: Path) -> list[FieldSpec]:
-    """Controls of the azimuth channel: a gyrocompass, which needs the log, or a network."""
+def own_fields(kind: Damping, path: Path) -> list[FieldSpec]:
+    """Controls of the parameters that a kind of damping has of its own."""
+    return form.fields(kind.settings, (*path, kind.id)) if kind.settings else []
+
+
+def azimuth_fields(scenario: Scenario, index: int) -> list[FieldSpec]:
+    """Controls of the azimuth channel: a gyrocompass, which needs the log, or a network.
+
+    None where the scenario has no azimuth channel, so that every choice would be refused.
+    """
+    method, path = scenario.method[index], ("method", index)
+    whole = WHOLE.get(method.damping)
+    given = method.azimuth.id != "none" or method.gyrocompass is not None
+    if "azimuth" not in method.kind.blocks or whole is None or not (given or meets(scenario, whole)):
+        return []
     switch = form.flag(Method, "gyrocompass", path)
     if method.gyrocompass is not None:
         return [switch, *form.fields(Gyrocompass, (*path, "gyrocompass"))]
