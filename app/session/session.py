@@ -3,7 +3,7 @@
 import logging
 import threading
 import time
-from collections.abc import Callable, Set
+from collections.abc import Callable
 from pathlib import Path
 
 from navcore.engine.run import Run
@@ -23,6 +23,7 @@ from schuler_bench.jobs.worker import Watch, Worker
 from schuler_bench.session.display import Display
 from schuler_bench.session.history import History, State, first_editable
 from schuler_bench.session.keeping import OwnKeeping
+from schuler_bench.session.pages import OpenPages
 from schuler_bench.session.pins import Kept, Pins
 from schuler_bench.session.uploads import Uploads
 from schuler_bench.session.view import View
@@ -62,8 +63,8 @@ class Session:
         It was kept, or is a copy of one that was: not a new visitor's.
     keeping : OwnKeeping
         Whether the session is kept.
-    presenter : View or None
-        The page that drives; the others watch.
+    pages : OpenPages
+        Those that show it.
     run : Run or None
         The last good one.
     prepared : Run or None
@@ -92,6 +93,7 @@ class Session:
     ) -> None:
         self.id, self._name = id, (name := log_name(id))
         self.lock = threading.RLock()
+        self.pages = OpenPages(self.lock)
         self.display = Display()
         self._take(State(scenario, origin, first_editable(scenario), scenario))
         self.history = History(self.state)
@@ -99,15 +101,13 @@ class Session:
         self.on_answer: Callable[[float], None] = lambda _: None
         self.share: Callable[[], str] = lambda: self.id
         self.shared_pins: Callable[[str], Kept | None] = lambda _: None
-        self.presenter: View | None = None
         self.restored = False
-        self.keeping = OwnKeeping(lambda: self._tell(lambda view: view.keeping_changed()))
+        self.keeping = OwnKeeping(lambda: self.pages.tell(lambda view: view.keeping_changed()))
         self.run: Run | None = None
         self.prepared: Run | None = None
         self.run_number = 0
         self.uploads, self.study_file = Uploads(folder), ("", "")
         self._before = self.state
-        self._views: list[View] = []
         self._after_run: list[Callable[[], None]] = []
         self._simulate = simulate or self._simulate_after
         self._worker: Worker[State] = Worker(
@@ -117,7 +117,7 @@ class Session:
         self.pins = Pins(self._pins_changed, self._simulate, name)
         self.envelopes = Envelopes(
             self._simulate,
-            lambda: self._tell(lambda view: view.envelope_progressed()),
+            lambda: self.pages.tell(lambda view: view.envelope_progressed()),
             self._pictures_changed,
             name=name,
         )
@@ -133,9 +133,7 @@ class Session:
         """Add an open page; a run is begun if there is none to show, or only one of an earlier scenario."""
         scheduler().come_back(self._name)
         with self.lock:
-            self._views.append(view)
-            if self.presenter is not None:
-                self._tell(lambda other: other.presenter_changed())
+            self.pages.add(view)
             if self.run is None or (self.outdated and not runs_on_demand(self.scenario)):
                 if not self._worker.busy:
                     self._worker.submit(self.state)
@@ -145,38 +143,28 @@ class Session:
     def detach(self, view: View) -> None:
         """Remove a closed page; without any, what was asked for goes on behind all others for a while."""
         with self.lock:
-            self._views = [other for other in self._views if other is not view]
-            if not self._views:
+            presented = self.pages.remove(view)
+            if not self.pages.all:
                 scheduler().leave(self._name)
-            if self.presenter is view:
+            if presented:
                 self.present(None)
-            elif self.presenter is not None:
-                self._tell(lambda other: other.presenter_changed())
 
     @property
     def open_pages(self) -> int:
         """Number of open pages."""
         with self.lock:
-            return len(self._views)
+            return len(self.pages.all)
 
     @property
     def expected(self) -> bool:
         """Whether its last page has gone so lately that it may come back for what was asked for."""
         return scheduler().expects(self._name)
 
-    def tell_front(self, view: View, front: Set[str]) -> None:
-        """Let the watchers follow the tabs that the presenting page brings to the front."""
-        with self.lock:
-            if self.presenter is view and front:
-                self._tell(lambda other: other.front_changed(front) if other is not view else None)
-
     def present(self, view: View | None) -> bool:
         """Let one page drive alone, the 3D view large, or (None) all; False while another page drives."""
         with self.lock:
-            if view is not None and self.presenter not in (None, view):
+            if not self.pages.present(view):
                 return False
-            self.presenter = view
-            self._tell(lambda other: other.presenter_changed())
             self.show(None, large="plots" if view is None else "view")
             return True
 
@@ -243,7 +231,7 @@ class Session:
         with self.lock:
             self.selected = min(max(index, 0), len(self.scenario.method) - 1)
             self.history.push(self.state)
-            self._tell(lambda view: view.scenario_changed(by))
+            self.pages.tell(lambda view: view.scenario_changed(by))
             self.on_change()
 
     def _walk(self, step: Callable[[], State | None]) -> bool:
@@ -263,7 +251,7 @@ class Session:
             return
         self._worker.cancel()
         self.outdated = self.run is None or self.run.scenario != state.scenario
-        self._tell(lambda view: view.run_waits() if self.outdated else view.run_ended())
+        self.pages.tell(lambda view: view.run_waits() if self.outdated else view.run_ended())
 
     def _take(self, state: State) -> None:
         self.scenario, self.origin, self.selected = state.scenario, state.origin, state.selected
@@ -274,7 +262,7 @@ class Session:
         self._take(state)
         self.verifier.leave(state.scenario)
         self.searches.changed()
-        self._tell(lambda view: view.scenario_changed(by))
+        self.pages.tell(lambda view: view.scenario_changed(by))
         self.on_change()
 
     def show(self, by: object, **changes: object) -> None:
@@ -292,7 +280,7 @@ class Session:
             self.display = display
             if self.run is not None:
                 self.envelopes.follow(self.run.scenario, display.envelope)
-            self._tell(lambda view: view.display_changed(by))
+            self.pages.tell(lambda view: view.display_changed(by))
             self.on_change()
 
     def _pins_changed(self) -> None:
@@ -300,7 +288,7 @@ class Session:
         self._pictures_changed()
 
     def _pictures_changed(self) -> None:
-        self._tell(lambda view: view.display_changed(None))
+        self.pages.tell(lambda view: view.display_changed(None))
 
     @property
     def waits(self) -> bool:
@@ -345,13 +333,13 @@ class Session:
             nonlocal last_s
             if watch.elapsed_s - last_s >= _REPORT_EVERY_S:
                 last_s = watch.elapsed_s
-                self._tell(lambda view: view.run_progressed(fraction, last_s))
+                self.pages.tell(lambda view: view.run_progressed(fraction, last_s))
 
         try:
             refuse_too_large(scenario)
             run = run_for(self._name, self._simulate, scenario, progress, watch)
         except KernelAwaited:
-            self._tell(lambda view: view.run_awaits_kernels())
+            self.pages.tell(lambda view: view.run_awaits_kernels())
             raise
         except Exception as error:
             self._after_run = []
@@ -360,14 +348,14 @@ class Session:
                 return
             _log.exception("a run failed")
             failure = error
-            self._tell(lambda view: view.run_failed(failure))
+            self.pages.tell(lambda view: view.run_failed(failure))
             return
         if run is None or run.status == "stopped":
             if runs_on_demand(self.scenario) and scenario != self.scenario:
-                self._tell(lambda view: view.run_waits())
+                self.pages.tell(lambda view: view.run_waits())
             elif not watch.superseded():
                 self._after_run = []
-                self._tell(lambda view: view.run_stopped())
+                self.pages.tell(lambda view: view.run_stopped())
             return
         with self.lock:
             self.run, self.run_number = run, self.run_number + 1
@@ -376,7 +364,7 @@ class Session:
             self.envelopes.follow(scenario, self.display.envelope)
             waiting = [] if self.outdated else self._after_run
             self._after_run = [act for act in self._after_run if act not in waiting]
-        self._tell(lambda view: view.run_ended())
+        self.pages.tell(lambda view: view.run_ended())
         for act in waiting:
             act()
         self.on_answer(time.monotonic() - watch.asked_s)
@@ -397,14 +385,4 @@ class Session:
                 self._show_state(self._before, self)
                 self.outdated = self.run is None or self.run.scenario != self.scenario
         message = for_a_page(error)
-        self._tell(lambda view: view.run_refused(message))
-
-    def _tell(self, message: Callable[[View], None]) -> None:
-        with self.lock:
-            views = list(self._views)
-        for view in views:
-            try:
-                message(view)
-            except Exception as error:
-                _log.exception("a page could not be brought up to date")
-                view.run_failed(error)
+        self.pages.tell(lambda view: view.run_refused(message))

@@ -240,7 +240,7 @@ class Page:
     def presenter_changed(self) -> None:
         """Another page drives now, or none."""
         self._update(self.palette.show_presenter)
-        self.session.tell_front(self, self._front)
+        self.session.pages.tell_front(self, self._front)
 
     def front_changed(self, front: Set[str]) -> None:
         """Follow the tabs of the page that presents."""
@@ -357,7 +357,7 @@ class Page:
         self._window, front = window, frozenset(rooms)
         if front:
             fresh, self._front = front - self._front, front
-            self.session.tell_front(self, fresh)
+            self.session.pages.tell_front(self, fresh)
         if self._built:
             self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(report)}"></div>'
             self._arrange()

@@ -154,11 +154,11 @@ class Palette:
 
     @property
     def _drives(self) -> bool:
-        return self._session.presenter is self._page
+        return self._session.pages.presenter is self._page
 
     @property
     def _watches(self) -> bool:
-        return self._session.presenter not in (None, self._page)
+        return self._session.pages.presenter not in (None, self._page)
 
     def _lock(self) -> None:
         """Lock or free the controls as the session says now; those that were made meanwhile too."""

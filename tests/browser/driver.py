@@ -319,7 +319,7 @@ class Bench(Choosing):
         """The server's side of all open pages of the session; none when it is in another process."""
         if self.sessions is None:
             return []
-        return [view for view in self.session._views if isinstance(view, OpenPage)]
+        return [view for view in self.session.pages.all if isinstance(view, OpenPage)]
 
     def _receive(self) -> None:
         number, session = f"{id(self)} {next(self._mark_numbers)}", self.session

@@ -222,7 +222,7 @@ def test_a_page_whose_drawing_fails_does_not_hold_up_the_other(session: Session,
 
     other = Watcher()
     other.run_ended = broken  # pyright: ignore[reportAttributeAccessIssue]
-    session._views.insert(0, other)
+    session.pages.all.insert(0, other)
     change(session, page, "duration_h", 2.0)
     assert other.names == ["scenario_changed", "run_failed"] and page.names[-1] == "run_ended"
 
@@ -256,12 +256,12 @@ def test_one_page_presents_at_a_time_and_its_leaving_frees_the_others(session: S
     for page in (one, two):
         session.attach(page)
     assert session.present(one) and not session.present(two)
-    assert session.presenter is one and "presenter_changed" in two.names
-    assert session.present(None) and session.presenter is None
+    assert session.pages.presenter is one and "presenter_changed" in two.names
+    assert session.present(None) and session.pages.presenter is None
     assert session.present(two) and session.display.large == "view"
     one.calls.clear()
     session.detach(two)
-    assert (session.presenter, session.display.large) == (None, "plots")
+    assert (session.pages.presenter, session.display.large) == (None, "plots")
     assert one.names == ["presenter_changed", "display_changed"]
     session.present(one)
     session.attach(late)
@@ -272,11 +272,11 @@ def test_watchers_are_told_the_tabs_of_the_page_that_presents(session: Session) 
     one, two = Watcher(), Watcher()
     for page in (one, two):
         session.attach(page)
-    session.tell_front(one, {"Poles"})
+    session.pages.tell_front(one, {"Poles"})
     assert "front_changed" not in two.names  # nobody presents: each looks where it likes
     session.present(one)
-    session.tell_front(two, {"Step"})
-    session.tell_front(one, {"Poles"})
+    session.pages.tell_front(two, {"Step"})
+    session.pages.tell_front(one, {"Poles"})
     assert [page.names.count("front_changed") for page in (one, two)] == [0, 1]
 
 
@@ -301,7 +301,7 @@ def test_only_a_bounded_number_of_sessions_without_a_page_is_kept(
 ) -> None:
     monkeypatch.setattr(sessions, "MOST_SESSIONS", 3)
     watched = visitors.get("watched")
-    watched._views.append(Watcher())
+    watched.pages.all.append(Watcher())
     for number in range(10):
         visitors.get(f"visitor-{number}")
     assert len(visitors) == 5  # three idle ones, the present one, and the one with an open page
@@ -315,7 +315,7 @@ def test_runs_of_visitors_who_have_left_are_dropped(
     every = [visitors.get(f"visitor-{number}") for number in range(6)]
     for session in every:
         session.run = answer(PRESET)
-    every[0]._views.append(Watcher())
+    every[0].pages.all.append(Watcher())
     visitors.forget_idle()
     assert [session.run is not None for session in every] == [True, False, False, False, True, True]
 
@@ -328,7 +328,7 @@ def test_large_runs_of_visitors_who_have_left_are_dropped_before_their_number(
     every = [visitors.get(f"visitor-{number}") for number in range(5)]
     for session in every:
         session.run = answer(PRESET)
-    every[0]._views.append(Watcher())
+    every[0].pages.all.append(Watcher())
     visitors.forget_idle()
     assert [session.run is not None for session in every] == [True, False, False, True, True]
 
