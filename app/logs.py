@@ -61,5 +61,5 @@ def begin_logging(how: str | None = None, *, to_file: bool = True) -> None:
     handler.setFormatter(_Lines() if how == "json" else _People("%(name)s: %(message)s"))
     log = logging.getLogger("schuler")
     log.handlers = [handler]
-    log.setLevel(logging.INFO)  # removals are told
+    log.setLevel(logging.INFO)  # removals are logged
     log.propagate = False

@@ -235,7 +235,7 @@ def _inner_socket() -> socket.socket:
 
 
 def work() -> None:
-    """One worker: serves on the socket it was given until it is told to end, or its door has gone."""
+    """One worker: serves on the socket it was given until it is asked to end, or its door has ended."""
     from schuler_bench.http.server import Inner
     from schuler_bench.serve import open_dashboard
 

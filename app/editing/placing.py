@@ -96,7 +96,7 @@ def pair_at(point: complex) -> tuple[float, float]:
 
 
 def unit_frequency(scenario: Scenario, block: Block) -> float:
-    """Frequency in whose units a pair is told, rad/s."""
+    """Unit of frequency in which a pair is expressed, rad/s."""
     return EARTH_RATE if block == "azimuth" else scenario.omega_s
 
 

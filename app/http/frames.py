@@ -1,7 +1,7 @@
 """The gate every message from a browser passes before viser sees it.
 
 viser writes whatever a message names into its control, calls included; here a message is decoded against
-viser's own message types, judged, and passed on, dropped (the visitor is told) or answered by closing that
+viser's own message types, judged, and passed on, dropped with a notice, or answered by closing that
 one connection.
 """
 
@@ -72,7 +72,7 @@ class Uploading:
         return self._gates[-1]
 
     def end(self, gate: Gate) -> None:
-        """Forget the uploads of a page that has gone."""
+        """Forget the uploads of a closed page."""
         self._gates = [other for other in self._gates if other is not gate]
 
 

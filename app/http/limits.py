@@ -13,7 +13,7 @@ class Limits:
     ----------
     visitors : int
         Open pages (websockets). When all places are taken, the one that has been idle longest makes room for
-        a page that a person opens; the others are told that the bench is full.
+        a page that a person opens; the others see that the bench is full.
     pages_per_address : int
         Open pages of one address: a lecture room behind one router fits, and leaves a few places to others.
     idle_s : float

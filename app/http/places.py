@@ -1,4 +1,4 @@
-"""Who has a place: connections still at the door, pages that are open, and who goes when there is no room.
+"""Who has a place: connections still at the door, pages that are open, and which of them is evicted.
 
 Everything here runs in the event loop of the server; nothing is locked.
 """

@@ -34,7 +34,7 @@ _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
 _PLACE_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})/place")
 _FULL = "All places are taken; try again later."
 _LONGEST_TURN_S = 5.0
-"""So long a token waits for its turn, when very many are guessed."""
+"""Longest time for which a token is throttled, when very many are guessed."""
 _METRICS = "text/plain; version=1.0.0; charset=utf-8"
 _FOR_EVER = "private, max-age=31536000, immutable"
 

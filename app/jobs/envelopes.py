@@ -16,7 +16,7 @@ from schuler_bench.plots.envelope import BandKind, Envelope, covariance_envelope
 
 SEEDS = 20
 STILL_S = 0.7
-"""A scenario must stand still for so long before its bands are begun."""
+"""The bands of a scenario are begun once it was unchanged for so long."""
 
 Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
 
@@ -37,7 +37,7 @@ class Envelopes(Search[_Asked, Envelope]):
     came_further, ended : callable
         Called without arguments: there is more progress to show; there is a new envelope.
     still_s : float
-        A scenario must stand still for so long before its bands are begun.
+        The bands of a scenario are begun once it was unchanged for so long.
     name : str
         Of the visitor, for the turns.
     """

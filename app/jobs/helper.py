@@ -29,9 +29,9 @@ from schuler_bench.jobs.remote import Compute, Outcome
 _ASK_S, _REPORT_S = 0.05, 0.1
 """Between two questions whether to go on, and between two reports of progress."""
 _LOOK_S, _END_S = 0.25, 3.0
-"""Between two looks at a helper that asks nothing; so long one may take to end a job that nobody wants."""
+"""Polling interval of a quiet helper, and kill timeout of one that is to end a cancelled job."""
 _IDLE_S = 300.0
-"""A helper without a job for so long ends, and gives its memory back."""
+"""A helper that was idle for so long ends, and gives its memory back."""
 _NICE = 10
 _log = logging.getLogger("schuler.helper")
 
@@ -188,7 +188,7 @@ def compute(
 
 
 def _help(pipe: Connection) -> None:
-    """Do one job after the other, until the server has gone or has none for long."""
+    """Do one job after the other, until the server has ended or the helper was idle for too long."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is for the server
     os.nice(_NICE)
     when_missing(Need.WAIT)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from navcore.design.shares import Share
 
 STILL_S = 0.7
-"""A scenario must stand still for so long before its seeds are run."""
+"""The seeds of a scenario are run once it was unchanged for so long."""
 FEW, SEEDS = 24, 200
 """First for a guess, then for the interval."""
 _LONGEST_S = 120.0

@@ -74,7 +74,7 @@ def carry_out(ours: dict[str, str], report: tuple[str, str, int], function: Comp
     ours : dict of str
         The server's `program`.
     report : (str, str, int)
-        Topic to which progress is told; name of the job, number of its part.
+        Topic to which progress is reported; name of the job, number of its part.
     function, item
         ``function(item, progress, cancelled)`` is called.
 

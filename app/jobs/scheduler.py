@@ -33,10 +33,10 @@ WORKERS = "SCHULER_WORKERS"
 _TURN_S = 0.2
 """A long or spare job that has begun, or has stood still for long, goes on for at least so long."""
 _PATIENCE_S = {"long": 0.8, "spare": 2.0}
-"""So long one stands still at most before it gets a turn."""
+"""Longest pause of a job before it gets a turn."""
 _LOOK_S = 0.05
 _DRAWN_S = 0.12
-"""So long after an answer its picture is drawn, by this process and by a browser that may share the cores."""
+"""Time to draw the picture of an answer, here and in a browser that may share the cores."""
 _MOST_REMEMBERED = 4096
 _MOST_SPARE = 4
 """Jobs beside the answers at once: each may be of a process of its own."""
@@ -240,7 +240,7 @@ class Scheduler:
             return counts | {"running_bytes": sum(t.load.bytes for t in self._running)}
 
     def others_about(self, visitor: object) -> bool:
-        """Whether anybody but a visitor has been answered of late, or is to be."""
+        """Whether any other visitor was recently served, or has a job in the queue."""
         with self._changed:
             since_s = time.monotonic() - _ABOUT_S
             about = {v for v, s in self._last_answer_s.items() if s > since_s}

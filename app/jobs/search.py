@@ -201,7 +201,7 @@ class Search(Generic[Asked, Found]):
         complete = result is not None and self._complete(result)
         given_up = not complete and watch.given_up()
         with self._lock:
-            if self._job is not job:  # stopped, or another one waits
+            if self._job is not job:  # stopped, or superseded
                 return
             self.fraction = self._job = None
             ended_early = given_up or (self._halted if result is None else not complete)

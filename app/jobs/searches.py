@@ -50,7 +50,7 @@ class Searches:
             self._watchers.append(changed)
 
     def unwatch(self, changed: Callable[[], None]) -> None:
-        """Forget a page that has gone."""
+        """Forget a closed page."""
         with self._lock:
             self._watchers = [other for other in self._watchers if other != changed]
 

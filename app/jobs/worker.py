@@ -13,10 +13,10 @@ from schuler_bench.jobs.scheduler import Lane, Load, Scheduler, Ticket, schedule
 Job = TypeVar("Job")
 
 SUPERSEDE_AFTER_S = 0.3
-"""A run younger than this is let end although a newer job waits: while a slider is dragged, jobs come faster
+"""A run younger than this may finish although it is superseded: while a slider is dragged, jobs come faster
 than runs end, and cancelling each of them would show nothing until the drag ends."""
 _KERNEL_S = 0.5
-"""After so long a job is tried again that needs a kernel which is being compiled."""
+"""Retry interval of a job whose kernel is being compiled."""
 
 _log = logging.getLogger("schuler.worker")
 

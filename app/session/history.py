@@ -107,7 +107,7 @@ class History:
         state : State
             After the change.
         name : str
-            What was done, in words; else it is told from what changed.
+            What was done, in words; else it follows from what changed.
         gesture : str
             Changes of one gesture that follow each other are one step, however long it takes.
         """

@@ -80,7 +80,7 @@ class Pin:
 
 
 class Pins:
-    """The pins of a session; every change is told.
+    """The pins of a session; every change is reported.
 
     Parameters
     ----------

@@ -222,7 +222,7 @@ class Commands:
                 self._heard.content = f'<div id="sb-told" hidden data-count="{self._done}"></div>'
 
     def run(self, name: str, argument: str = "") -> None:
-        """Carry out one command; an unknown one is ignored, a fault is told to the user."""
+        """Carry out one command; an unknown one is ignored, a fault is shown to the user."""
         command = self._by_name.get(name)
         if command is None:
             self._logged += 1

@@ -170,7 +170,7 @@ class Editor:
                 allowed = error.allowed if isinstance(error, NotANumber) else Text("cannot be read")
                 lines = [notices.refusal(Fault("", "", entered, allowed), kept, typed=True)]
             control.refuse(lines)
-        notices.tell(self._client, Text("{label}: not taken over", label=control.spec.label), lines)
+        notices.tell(self._client, Text("{label}: rejected", label=control.spec.label), lines)
         self._client.flush()
 
 

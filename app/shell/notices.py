@@ -128,7 +128,7 @@ def refusal(
     kept : str
         The value that stays in force.
     field : str
-        The control's own field, dotted. Where the fault is in another field, both are told.
+        The control's own field, dotted. Where the fault is in another field, both are named.
     entered : object
         What the control was given.
     typed : bool

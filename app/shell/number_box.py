@@ -83,7 +83,7 @@ class NumberBox:
             kept = write_number(self.value)
             line = notices.refusal(Fault("", "", entered, error.allowed), kept, typed=True)
             self._box.show(kept)
-            notices.tell(self._client, Text("{label}: not taken over", label=self._label), [line])
+            notices.tell(self._client, Text("{label}: rejected", label=self._label), [line])
             return
         self.value = value
         self._box.show(write_number(value))

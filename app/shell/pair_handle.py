@@ -14,7 +14,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame
 
 PAIR_HANDLE = "pair handle"
-"""Label of the hidden control that is told where the handle is (static/handle.js)."""
+"""Label of the hidden control that receives the place of the handle (static/handle.js)."""
 Kind = Literal["poles", "bode"]
 """Axes of the plot: real and imaginary part in units of omega_s, or frequency and damping."""
 
@@ -66,7 +66,7 @@ class PairHandle:
         return note | {"handle": where | handle}
 
     def take(self, text: str) -> None:
-        """Place the pair where the handle is; what could not be met is told once a drag, at its end."""
+        """Place the pair where the handle is; what could not be met is reported at the end of a drag."""
         drag, session, client = read_drag(text), self._frame.session, self._frame.client
         if drag is None:
             return

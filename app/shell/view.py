@@ -44,7 +44,7 @@ Tab = AbstractContextManager[Any]
 Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
 """Content of a plot that can be saved: the plotly figure, or the plots over time."""
 P = TypeVar("P")
-NOT_GIVEN = Text("not given: this is not the same as 0")
+NOT_GIVEN = Text("not set (which is not 0)")
 """Below the box of a number that the scenario leaves out."""
 
 

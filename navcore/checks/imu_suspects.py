@@ -13,7 +13,7 @@ _FORCE_SLIPS = {
 }  # fmt: skip
 """Units by the size of gravity in them over that in m/s^2; the numbers were taken as m/s^2."""
 _TURN_SLIPS = {1.0 / DEG: ("deg/s", "rad/s"), 3600.0: ("deg/h", "deg/s"), 3600.0 / DEG: ("deg/h", "rad/s")}
-"""True unit and the one that was taken, by the rate that is told over the Earth's."""
+"""True unit and the one that was taken, by the measured rate over the Earth's."""
 _SENSORS = (Text("gyro x"), Text("gyro y"), Text("gyro z"), Text("accel x"), Text("accel y"), Text("accel z"))
 _UPWARD = {"+x": "urf", "-x": "dfr", "+y": "fur", "-y": "rdf"}
 

@@ -182,7 +182,7 @@ def why(
 def _remarks(scenario: Scenario) -> tuple[str, ...]:
     switches = any(method.policy.id != "constant" and not method.undamped for method in scenario.method)
     remarks = {
-        Text("A recorded IMU: its errors are not known one by one, so only the periods are told."): (
+        Text("A recorded IMU: its errors are not known one by one, so only the periods are given."): (
             scenario.imu.file is not None
         ),
         Text("The recorded log counts as one source: what it errs by is not known part by part."): (

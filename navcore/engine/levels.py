@@ -17,7 +17,7 @@ from navcore.quantities import ERRORS, NAMES, QUANTITIES, RecordedError
 from navcore.scenario.requirement import Requirement
 
 OF_LEVEL = 0.05
-"""Part of a method's own level from which a difference is told."""
+"""Part of a method's own level from which a difference is reported."""
 Pair = tuple[MethodRun, MethodRun]
 """The strapdown run and the linear one."""
 

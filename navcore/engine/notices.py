@@ -16,7 +16,7 @@ from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.recorded import recording_notices, short_run_notices
 
 FAR_FROM_SITE_DEG = 2.0
-"""Latitude by which a track may start off the site before the user is told, deg."""
+"""Latitude by which a track may start off the site before the user is warned, deg."""
 
 _LOOK_S = 10.0
 """Spacing of the times at which the log's events are looked at, s."""

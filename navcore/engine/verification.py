@@ -37,7 +37,7 @@ LATITUDE_DEG = 75.0
 LONG_H = 72.0
 """Length from which small differences of the periods have put the curves out of phase, h."""
 OF_PEAK = 0.05
-"""Part of a curve's peak from which a difference is told."""
+"""Part of a curve's peak from which a difference is reported."""
 _STRAPDOWN_SHARE = 0.95
 """Of the time that a verification takes."""
 _SMALLEST = {"angle": 0.1 * ARCSEC, "speed": 1e-3, "length": 1.0}

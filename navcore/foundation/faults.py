@@ -16,7 +16,7 @@ from navcore.foundation.written_toml import number_refused
 
 _ABSENT = object()
 _MOST_ERRORS = 100
-"""Errors that are told one by one: nobody reads more."""
+"""Errors that are listed one by one: nobody reads more."""
 _LONGEST_NAME = 60
 _WANTED = {
     "float": Text("must be a number"),

@@ -3,7 +3,7 @@
 A parser that is fed hostile bytes may take gigabytes, minutes or the whole process with it. Once `start` has
 been called (a server does; a person's own command line need not), `call` runs a function in a child that is
 forked from a warm, single-threaded helper: some 10 ms. What a child may take is stated in `Limits`; one that
-takes more is killed, and the caller is told in one line.
+takes more is killed, and the caller gets one line that says so.
 """
 
 import os

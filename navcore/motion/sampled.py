@@ -45,7 +45,7 @@ _QUANTITIES = (PIECE_LAT, PIECE_LON, PIECE_HEIGHT, PIECE_PITCH, PIECE_ROLL, PIEC
 
 
 class SampledMotion(MotionParameters):
-    """Base of the motions that are told by `path`.
+    """Base of the motions that `path` describes.
 
     During an alignment before t = 0 the vehicle rests at the attitude of t = 0; a motion that knows better
     overrides `before_start`.

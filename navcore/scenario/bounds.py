@@ -2,7 +2,7 @@
 
 A scenario of every field and twelve methods has some 20 kB. The TOML reader of the standard library takes
 quadratic time for a key of very many parts, recurses into nested arrays and refuses integers of thousands of
-digits by an error of its own; each of these is told as a fault,
+digits by an error of its own; each of these is reported as a fault,
 here or by `navcore.scenario.file.parse_toml`.
 """
 

@@ -53,25 +53,25 @@ def test_a_wrong_value_is_restored_and_the_reason_said(fresh: Bench, session: Se
     number, before = fresh.run, session.scenario
     for text in ("7", "-5"):
         fresh.box("network.sigma").fill(text)
-        notice = fresh.notice(f"{label_of('network.sigma')}: not taken over")
+        notice = fresh.notice(f"{label_of('network.sigma')}: rejected")
         assert "must be >= 1e-05 and <= 1 (1/s)" in notice
         assert fresh.value("network.sigma") == 0.0088
         assert any("was refused" in note for note in fresh.notes)
         fresh.close_notices()
     fresh.tab("Log")
     fresh.choose("reference", "none")
-    told = fresh.notice("reference: not taken over")
+    told = fresh.notice("reference: rejected")
     assert "none does not go with method.1.damping = external: needs a reference velocity" in told
     assert fresh.box("reference").input_value() == "log"
     assert (fresh.run, session.scenario) == (number, before)
     fresh.tab("Method")
     fresh.choose_and_run("network", "pole2")
     fresh.box("network.n1").fill("10")
-    assert "(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0" in fresh.notice("n₁: not taken over")
+    assert "(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0" in fresh.notice("n₁: rejected")
     assert fresh.value("network.n1") == 14.0
     fresh.reset("sikuliaq-like", "Method", selected=1)
     fresh.choose("policy", "adaptive")
-    fresh.notice("policy: not taken over")
+    fresh.notice("policy: rejected")
     assert any("unity2" in note for note in fresh.notes)
     assert fresh.box("policy").input_value() == choice_words("constant")
 

@@ -70,7 +70,7 @@ def test_anything_else_is_refused_with_the_text(sensors: Bench, session: Session
     for text in SPOILED[:6] if how == "pasted" else SPOILED:
         give(sensors, how, text)
         page.keyboard.press("Enter")
-        notice = sensors.notice("gyro bias x (°/h): not taken over")
+        notice = sensors.notice("gyro bias x (°/h): rejected")
         assert repr(text) in notice and f"{START} is kept" in notice
         sensors.wait_until(lambda: box.input_value() == str(START), 10.0)
         assert held(session) == START
@@ -81,7 +81,7 @@ def test_an_empty_box_is_refused_and_escape_gives_the_number_back(sensors: Bench
     page, box = sensors.page, sensors.box(FIELD)
     box.fill("")
     page.keyboard.press("Tab")
-    assert "''" in sensors.notice("gyro bias x (°/h): not taken over")
+    assert "''" in sensors.notice("gyro bias x (°/h): rejected")
     sensors.close_notices()
     give(sensors, "typed", "12abc")
     page.keyboard.press("Escape")
@@ -131,7 +131,7 @@ def test_boxes_that_are_no_fields_read_the_same(sensors: Bench, session: Session
     sensors.tab("Study")
     seeds = sensors.box("seeds")
     seeds.fill("1,5")
-    assert "'1,5'" in sensors.notice("seeds: not taken over")
+    assert "'1,5'" in sensors.notice("seeds: rejected")
     sensors.close_notices()
     seeds.fill("500")
     sensors.notice("Not changed")

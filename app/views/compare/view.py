@@ -97,7 +97,7 @@ class CompareView(PictureView[str]):
                 hint=Text("Its scenario becomes the present one; this can be undone."),
             )
             remove = gui.add_button(
-                REMOVE, order=12, color="orange", hint=Text("Its curves go from every plot.")
+                REMOVE, order=12, color="orange", hint=Text("Removes its curves from every plot.")
             )
         self._details = [self._chosen, self._name, self._color, self._shown, self._note, back, remove]
         pin.on_click(lambda _: self._pin_run())

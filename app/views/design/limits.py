@@ -126,7 +126,7 @@ def _robust_title(found: Robust) -> str:
     """Explanation of the rows, and the cost of the most robust one in the scenario itself."""
     return Text(
         "Every network, tuned for the worst of {points} points of the study, and there; the first is worst "
-        "with {where}. Price: {price} % of the seeds of this scenario",
+        "with {where}. Cost: {price} % of the seeds of this scenario",
         points=found.points,
         where=factors_text(found.methods[0].where),
         price=number(100.0 * found.price, 3),

@@ -59,7 +59,7 @@ class Columns:
                 hint=Text("Of times that state none: Europe/Berlin, +02:00. Empty: UTC."),
             )
             self._skip: Any = gui.add_checkbox(
-                Text("skip rows that cannot be read"), False, hint=Text("They are counted and told.")
+                Text("skip rows that cannot be read"), False, hint=Text("Their number is reported.")
             )
             self._use = gui.add_button(Text("Read by these columns"))
             self._save = gui.add_button(Text("Download the map"), color="gray")

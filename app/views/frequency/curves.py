@@ -139,7 +139,7 @@ def pair(
     yaxes : (str, str)
         Of magnitude and phase.
     hover : str
-        How the magnitude is told.
+        How the magnitude is shown.
     """
     ys = (NOTHING, NOTHING) if curves is None else tuple(packed(curve) for curve in curves)
     both = common | {"x": NOTHING if omega is None else packed(omega), "xaxis": xaxis}

@@ -213,7 +213,7 @@ _AS_IT_FITS = Display()
 _LEAST = 0.01
 """Of the smallest units, such as µas: no sensor and no plot knows less."""
 _SMALLEST = {choose(1e-30).name: choose(0.0).name for choose in (angle_unit, speed_unit, length_unit)}
-"""The smallest units, and in which unit 0 is told."""
+"""The smallest units, and the unit in which 0 is shown."""
 _COMPUTED = (6, 7, 8)
 """Pitch, roll and heading among the columns of `MethodRun.navigation`."""
 

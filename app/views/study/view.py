@@ -50,7 +50,7 @@ class StudyView(PlotlyView):
     title = Text("Study")
     place = "lower"
     group = "decide"
-    look_for = Text("How a method fares over a grid of conditions and many seeds, and where it fails.")
+    look_for = Text("How a method performs over a grid of conditions and many seeds, and where it fails.")
     plots = (title,)
     asks = ("study",)
     above_px = 3 * CHOOSER_PX

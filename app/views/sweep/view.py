@@ -26,7 +26,7 @@ class SweepView(PlotlyView):
     title = Text("Sweep")
     place = "lower"
     group = "decide"
-    look_for = Text("How each method fares at other latitudes, log errors, sensor grades and sea states.")
+    look_for = Text("How each method performs at other latitudes, log errors, sensor grades and sea states.")
     plots = (title,)
     asks = ("sweep",)
     above_px = 2 * CHOOSER_PX
