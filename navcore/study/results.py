@@ -37,6 +37,9 @@ _GROUP_ROWS = 65_536
 class Folder:
     """Results of a study on disk.
 
+    Where results are there already, those of a new study lie with its parts, with a ``study.toml`` of their
+    own, and take the place of the earlier ones when they are complete.
+
     Parameters
     ----------
     path : path
@@ -76,6 +79,16 @@ class Folder:
                 self._claim(resume)
             yield
 
+    @property
+    def _beside(self) -> bool:
+        """Whether earlier results stay until those of the parts are complete."""
+        return (self._parts / STUDY_FILE).exists()
+
+    @property
+    def _place(self) -> Path:
+        """Folder of the results that the parts belong to."""
+        return self._parts if self._beside else self.path
+
     @contextmanager
     def _held(self) -> Iterator[None]:
         """Make the folder, and hold it against other commands."""
@@ -100,7 +113,9 @@ class Folder:
 
     def _claim(self, resume: bool) -> None:
         self._require_own_parts()
-        text, study = _identity(self._plan), self.path / STUDY_FILE
+        text, study = _identity(self._plan), self._place / STUDY_FILE
+        if self.summary() is not None:
+            self._remove_parts()  # a kill has left some of them
         if resume and study.exists():
             before = read_bytes(study, _LARGEST_STUDY_BYTES).decode("utf-8", errors="replace")
             if before != text:
@@ -112,17 +127,16 @@ class Folder:
                 raise refused(self.path, allowed)
             require_folder(self.path, (RUNS_FILE, SUMMARY_FILE), self._reads)
             if self.summary() is not None:
-                self._remove_parts()
                 return
-        elif self.summary() is None and self.done():
-            raise refused(self.path, Text("holds unfinished results: --resume goes on; or remove the folder"))
+        elif self.done():
+            allowed = Text("holds unfinished results: --resume goes on; or remove {parts}", parts=self._parts)
+            raise refused(self.path, allowed)
         else:
             require_folder(self.path, OUR_FILES, self._reads)
-            for name in (SUMMARY_FILE, RUNS_FILE):
-                (self.path / name).unlink(missing_ok=True)
             self._remove_parts()
             self._parts.mkdir(exist_ok=True)
-            with self._placing(STUDY_FILE) as file:
+            earlier = any((self.path / name).exists() for name in (RUNS_FILE, SUMMARY_FILE))
+            with self._placing(self._parts if earlier else self.path, STUDY_FILE) as file:
                 file.write(utf8(text))
         self._parts.mkdir(exist_ok=True)
         self._remove_half_written()
@@ -134,7 +148,7 @@ class Folder:
         if not stat.S_ISDIR(os.lstat(self._parts).st_mode):
             raise refused(self._parts, Text("is not a folder"))
         entries = (entry.name for entry in self._parts.iterdir() if not entry.name.startswith("."))
-        foreign = sorted(name for name in entries if not _PART.fullmatch(name))
+        foreign = sorted(name for name in entries if not (_PART.fullmatch(name) or name in OUR_FILES))
         if foreign:
             raise refused(
                 self._parts, Text("holds what no study wrote: {named}", named=", ".join(foreign[:3]))
@@ -144,6 +158,8 @@ class Folder:
         """Remove the parts, and their folder unless it holds anything else."""
         if self._parts.is_dir():
             self._remove_half_written()
+            for name in OUR_FILES:
+                (self._parts / name).unlink(missing_ok=True)
             for first, end in self.done():
                 self._part(first, end).unlink()
             with suppress(OSError):
@@ -154,7 +170,9 @@ class Folder:
             left.unlink()
 
     def summary(self) -> dict[str, Any] | None:
-        """Return the summary of a complete study, all of whose runs are in ``runs.parquet``; else None."""
+        """Return the summary of a study that is complete and in its place; else None."""
+        if self._beside:
+            return None
         try:
             document = json.loads((self.path / SUMMARY_FILE).read_text("utf-8"))
             return document if document["status"] == "complete" else None
@@ -195,16 +213,26 @@ class Folder:
 
     def join(self) -> Path:
         """Write ``runs.parquet`` from the parts, in the order of the runs; at no time all of it in memory."""
-        with self._placing(RUNS_FILE) as file:
+        place = self._place
+        with self._placing(place, RUNS_FILE) as file:
             self._write(file, self._grouped())
-        return self.path / RUNS_FILE
+        return place / RUNS_FILE
 
     def finish(self, summary: dict[str, Any]) -> None:
-        """Write ``summary.json``; of a complete study the parts are removed."""
-        with self._placing(SUMMARY_FILE) as file:
+        """Write ``summary.json``; a complete study takes the place of earlier results, and has no parts."""
+        with self._placing(self._place, SUMMARY_FILE) as file:
             file.write((json.dumps(summary, indent=2, allow_nan=False) + "\n").encode())
         if summary["status"] == "complete":
+            if self._beside:
+                self._replace_earlier()
             self._remove_parts()
+
+    def _replace_earlier(self) -> None:
+        """Replace the earlier results; ``study.toml`` last, so that --resume can end it."""
+        require_folder(self.path, OUR_FILES, self._reads)
+        with writing(self.path):
+            for name in (RUNS_FILE, SUMMARY_FILE, STUDY_FILE):
+                os.replace(self._parts / name, self.path / name)
 
     def _part(self, first: int, end: int) -> Path:
         return self._parts / f"{first:012d}-{end:012d}.parquet"
@@ -226,10 +254,10 @@ class Folder:
         yield pa.concat_tables([*waiting, self._schema.empty_table()])
 
     @contextmanager
-    def _placing(self, name: str) -> Iterator[IO[bytes]]:
+    def _placing(self, place: Path, name: str) -> Iterator[IO[bytes]]:
         """Give a file that gets its name once complete; what a kill leaves of it lies with the parts."""
         require_folder(self.path, [name], self._reads)
-        with writing(self.path), whole(self.path / name, self._parts) as file:
+        with writing(self.path), whole(place / name, self._parts) as file:
             yield file
 
     def _write(self, file: IO[bytes], tables: Iterable[pa.Table]) -> None:

@@ -117,6 +117,58 @@ def test_complete_results_are_replaced_as_a_whole(study, tmp_path):
     assert len(stored(folder)) == 2
 
 
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize("after", [0, 2, 9])
+def test_complete_results_stay_until_new_ones_are_complete(study, tmp_path, capsys, after):
+    """A second run removed the results of the first when it began: an interrupt or a full disk lost both."""
+    folder = tmp_path / "results"
+    assert main(["study", study, "--out", str(folder)]) == 0
+    earlier = files_of(folder)
+    (folder / "notes.md").write_text("ours")
+    write(tmp_path / "study.toml", factor=[LATITUDE, NOISE], seeds=4, sample={"points": 4})
+    made = plan_of(study)
+    results = Folder(folder, made)
+    with results.opened(resume=False):
+        document = carry_out(made, results, 1, stopped=Stops(after))
+    assert document["status"] == "stopped"
+    assert files_of(folder) == earlier | {"notes.md": b"ours"}
+    if results.done():
+        assert "--resume goes on; or remove" in refusal([study, "--out", str(folder)], capsys)
+    assert main(["study", study, "--out", str(folder), "--resume"]) == 0
+    assert main(["study", study, "--out", str(tmp_path / "alone")]) == 0
+    assert files_of(folder) == files_of(tmp_path / "alone") | {"notes.md": b"ours"}
+    assert not (folder / "parts").exists()
+
+
+@pytest.mark.parametrize("at", range(1, 7))
+def test_a_kill_while_earlier_results_are_replaced_loses_neither(tmp_path, monkeypatch, at):
+    folder, study = tmp_path / "results", write(tmp_path / "study.toml", seeds=2)
+    assert main(["study", study, "--out", str(folder)]) == 0
+    write(tmp_path / "study.toml", seeds=1)
+    for name in ("replace", "unlink"):
+        steps = iter(range(1, 99))
+        real = getattr(os, name)
+
+        def step(*arguments: Any, real: Any = real, steps: Any = steps, **options: Any) -> None:
+            if next(steps) == at:
+                raise KeyboardInterrupt
+            real(*arguments, **options)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(os, name, step)
+            try:
+                main(["study", study, "--out", str(folder)])
+            except KeyboardInterrupt:
+                pass
+        assert {"runs.parquet", "study.toml", "summary.json"} <= {*files_of(folder)}
+        call = ["study", study, "--out", str(folder)]
+        assert 0 in (main([*call, "--resume"]), main(call))
+        assert len(stored(folder)) == 2 and not (folder / "parts").exists()
+
+
 def test_a_folder_that_cannot_be_used_is_refused(study, tmp_path, capsys):
     assert "exists and is not a folder" in refusal([study, "--out", study], capsys)
     (tmp_path / "used").mkdir()
