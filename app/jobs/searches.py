@@ -7,8 +7,12 @@ from collections.abc import Callable
 from navcore.engine.run import Run
 from navcore.questions import QUESTIONS
 from navcore.questions.why import WhyQuestion
+from navcore.scenario.model import Scenario
 from schuler_bench.jobs.asking import Asker
+from schuler_bench.jobs.load import run_load
+from schuler_bench.jobs.long_runs import alone
 from schuler_bench.jobs.odds import Judge
+from schuler_bench.jobs.search import Search
 from schuler_bench.jobs.sweeps import Sweeper
 
 _log = logging.getLogger("schuler.searches")
@@ -26,6 +30,8 @@ class Searches:
     ----------
     asking : dict of Asker
         By the name of the question that it asks.
+    runner : Search
+        Runs of scenarios beside the session's own, such as a lesson's.
     judge : Judge
         Shares of seeds that meet the limits.
     sweeper : Sweeper
@@ -37,10 +43,14 @@ class Searches:
         self._watchers: list[Callable[[], None]] = []
         self.asking = {id: Asker(self._tell, question, name) for id, question in QUESTIONS.items()}
         self.judge = Judge(self._tell, name)
+        self.runner = Search[Scenario, Run](
+            self._tell, alone, lambda run: run.status != "stopped", name=name, load=run_load
+        )
         self.sweeper = Sweeper(self._tell, name)
         self._all = (
             *self.asking.values(),
             self.judge,
+            self.runner,
             self.sweeper,
         )
 

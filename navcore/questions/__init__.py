@@ -19,6 +19,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.study:StudyQuestion",
     "navcore.questions.sweep:SweepQuestion",
     "navcore.questions.verify:VerifyQuestion",
+    "navcore.questions.correction:CorrectionQuestion",
     "navcore.questions.why:WhyQuestion",
 )
 """Questions by name, in the order in which the command and the page offer them."""

@@ -180,6 +180,18 @@ def test_views_have_tabs_of_their_own() -> None:
     assert len(plots) == len(set(plots)) > 10
 
 
+def test_no_callback_of_a_page_simulates() -> None:
+    """A page's runs wait for their turn and can be stopped; cards and lessons are written beforehand."""
+    beforehand = {"schuler_bench.views.start.cards", "schuler_bench.views.learn.own"}
+    found = {
+        name
+        for name, tree in modules(PACKAGE).items()
+        if name.startswith(("schuler_bench.views", "schuler_bench.shell"))
+        and "navcore.engine.simulation" in set(imports(tree, modules("navcore")))
+    }
+    assert found == beforehand
+
+
 def test_the_shell_knows_no_view_by_name() -> None:
     named = {
         name: found

@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.engine.simulation import simulate
+from navcore.engine.correcting import corrected, correction_of
 from navcore.foundation.earth import WGS84
 from navcore.motion.static import StaticMotion
 from navcore.motion.track import TrackMotion
 from navcore.motion.truth import Site
+from navcore.questions.correction import CorrectionQuestion
 from navcore.sensors.corrections import corrections
 from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.reference import Reference
-from schuler_bench.session.correcting import corrected, correction_of, effect_lines
 from tests.turning_ship import HEADING, SPEED, TIME, TURN, late_log, log, table, track
 
 
@@ -92,7 +92,8 @@ def test_the_page_makes_the_correction_and_says_what_it_changes(tmp_path: Path) 
     scenario = late_log(tmp_path, 60.0)
     found = correction_of(scenario)
     assert found is not None
-    (line,) = effect_lines(simulate(scenario), found)
+    found_effects = CorrectionQuestion(scenario=scenario).answer()
+    (line,) = found_effects.told()
     before, after = (float(words.split(" m")[0]) for words in (line.split("error ")[1], line.split(", ")[1]))
     assert line.startswith("damped: position error") and after < 0.5 * before
     assert correction_of(corrected(scenario, found)) is None

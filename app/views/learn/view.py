@@ -25,6 +25,8 @@ COMMAND = "lesson"
 ``show``, ``answer TEXT``."""
 _UNREADABLE = Text("Type a number, such as 84.4.")
 
+_RUNNING = Text("Running this step's scenario for the answer.")
+
 
 class LearnView(View):
     """Shows lessons and carries out what they ask for."""
@@ -37,7 +39,8 @@ class LearnView(View):
         self._lock = threading.RLock()
         self._followed = self._shown_step
         self._given: dict[tuple[int, int], str] = {}
-        self._run: Run | None = None
+        self._runner = frame.session.searches.runner
+        self._judged_by = self._runner.result
         self._live: Scenario | None = None
         self._asked = 0
         frame.commands.register(COMMAND, self.command)
@@ -266,6 +269,9 @@ class LearnView(View):
 
     def _verdict(self, question: Question, given: str) -> tuple[str, bool]:
         run = self._run_of(self._scenario())
+        if run is None:
+            words = Text.joined("; ", self._runner.words) or _RUNNING
+            return Text('<p class="sb-muted">{words:html}</p>', words=words), False
         try:
             right = is_right(question, given, run)
         except NotANumber as error:
@@ -279,16 +285,25 @@ class LearnView(View):
             advice += Text(" Within {tolerance:g} % counts as right.", tolerance=100.0 * question.tolerance)
         return Text('<p class="sb-wrong"><b>&#10007; Not so.</b> {advice}</p>', advice=advice), False
 
-    def _run_of(self, scenario: Scenario) -> Run:
-        """Run of the step's own scenario: that on the page, or one made for the answer."""
+    def _run_of(self, scenario: Scenario) -> Run | None:
+        """Run of the step's own scenario: that on the page, or one made for the answer; None until then."""
         present = self.session.run
         if present is not None and present.scenario == scenario:
             return present
-        if self._run is None or self._run.scenario != scenario:
-            from navcore.engine.simulation import simulate
+        found, runner = self._runner.result, self._runner
+        if found is not None and found.scenario == scenario:
+            return found
+        if runner.under_way != scenario and not runner.words:
+            runner.begin(scenario)
+        return None
 
-            self._run = simulate(scenario)
-        return self._run
+    def follow_jobs(self) -> None:
+        """Judge an answer once the run of its step is there."""
+        found = self._runner.result
+        if found is not self._judged_by and self._lesson is not None:
+            self._judged_by = found
+            with self._lock:
+                self._show(self.frame.editor.moved)
 
     def _below_html(self, lesson: Lesson) -> str:
         following = (self._lesson or 0) + 1

@@ -1,13 +1,13 @@
 """Tab "Log": the reference velocity, its errors, events and outages."""
 
+from navcore.engine.correcting import corrected, correction_of
 from navcore.foundation.text import Text
+from navcore.questions.correction import CorrectionQuestion
 from navcore.scenario.model import Scenario
-from navcore.sensors.corrections import Correction
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import RECORDED_ONLY, Outage, Reference
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec
-from schuler_bench.session.correcting import corrected, correction_of, effect_lines
 from schuler_bench.session.log_fit import FittedLog, can_fit, fit_lines, fit_of, with_fitted_log
 from schuler_bench.shell import notices
 from schuler_bench.shell.palette import COPY_LOG, PASTE
@@ -39,6 +39,7 @@ class LogView(FieldsView):
 
     title = Text("Log")
     place = "edit"
+    asks = ("correction",)
     places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
 
     def build(self, tab: Tab) -> None:
@@ -80,7 +81,7 @@ class LogView(FieldsView):
             self._wrong = gui.add_html("", order=23, visible=False)
             self._correct = gui.add_button_group(CORRECTION, (TRY, CORRECT), hint=_CORRECT_TOLD, order=24)
         self._last_fit: tuple[Scenario, FittedLog] | None = None
-        self._tried: tuple[Correction, list[str]] | None = None
+        self._trying = self.session.searches.asking["correction"]
         self._correct.on_click(if_user(self._take_correction))
         self._fit.on_click(lambda _: self._fit_error())
         self._use.on_click(lambda _: self._use_fit())
@@ -122,7 +123,7 @@ class LogView(FieldsView):
         session = self.session
         title = Text("The correction cannot be made")
         with session.lock:
-            scenario, run = session.scenario, session.run
+            scenario = session.scenario
         found = correction_of(scenario)
         if found is None:
             return
@@ -130,9 +131,12 @@ class LogView(FieldsView):
             if self._correct.value == CORRECT:
                 with session.lock:
                     session.change(corrected(session.scenario, found), None)
-            elif run is not None and run.scenario == scenario:
-                self._tried = found, effect_lines(run, found)
-                self.frame.refresh()
+            else:
+                self._trying.begin(CorrectionQuestion(scenario=scenario))
+
+    def follow_jobs(self) -> None:
+        """Show how far the runs of a correction are, and what they gave."""
+        self._show_correction(self.session.scenario)
 
     def _show_correction(self, scenario: Scenario) -> None:
         """Show what of the recordings does not agree, and what its correction was found to change."""
@@ -140,8 +144,13 @@ class LogView(FieldsView):
         self._wrong.visible = self._correct.visible = found is not None
         if found is None:
             return
-        tried = self._tried[1] if self._tried is not None and self._tried[0] == found else []
-        self._wrong.content = notices.note([found.notice, *tried], "warning")
+        result, asked = self._trying.result, self._trying.asked
+        said = []
+        if result is not None and asked is not None and asked.scenario == scenario:
+            said = result.told()
+        if self._trying.fraction is not None:
+            said = [Text("Running with and without it: {part:.0f} %.", part=100.0 * self._trying.fraction)]
+        self._wrong.content = notices.note([found.notice, *said, *self._trying.words], "warning")
 
     def _show_fit(self, scenario: Scenario) -> None:
         """Show the fit as long as it is of the scenario's own recordings."""
