@@ -2,11 +2,17 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from tyro.conf import Positional, UseAppendAction, arg
 
 from schuler_bench.cli.terminal import emit_result, say
+
+if TYPE_CHECKING:
+    from navcore.engine.measures import SeedShare
+
+_RUN = 0.2
+"""Of the time, for the run itself where seeds judge its limits too."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +44,13 @@ class RunCommand:
 
     def execute(self) -> int:
         """Run, write, print; 0 when every method went through, else 3."""
+        from navcore.design.run_shares import draws_more_than_a_run, run_shares
         from navcore.engine.measures import metrics
         from navcore.engine.results import require_results, write_results
         from navcore.engine.simulation import simulate
+        from navcore.foundation.errors import InputError
         from navcore.foundation.inputs import noting
+        from navcore.foundation.progress import part_of
         from navcore.scenario.file import load
         from schuler_bench.cli.progress import working
         from schuler_bench.cli.run_text import run_text
@@ -51,10 +60,18 @@ class RunCommand:
         if self.out is not None:
             require_results(scenario, self.out, self.format, reads)
         with working(scenario.title or "running", self.quiet, self.scenario) as (progress, stopped):
-            run = simulate(scenario, progress, stopped)
+            judging = draws_more_than_a_run(scenario)
+            run = simulate(scenario, part_of(progress, 0.0, _RUN) if judging else progress, stopped)
+            shares: tuple[SeedShare, ...] = ()
+            if judging and run.status != "stopped":
+                try:
+                    shares = run_shares(scenario, progress=part_of(progress, _RUN, 1.0), cancelled=stopped)
+                except InputError as error:
+                    for fault in error.faults:
+                        say(f"{self.scenario}: no share of seeds: {fault}")
         if self.out is not None:
-            write_results(run, self.out, self.format, reads)
-        emit_result(self.json, metrics(run), lambda: run_text(run))
+            write_results(run, self.out, self.format, reads, shares)
+        emit_result(self.json, metrics(run, shares), lambda: run_text(run, shares))
         for method in run.methods:
             if method.reason:
                 say(f"{self.scenario}: {method.method.name}: {method.status}: {method.reason}")

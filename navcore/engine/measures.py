@@ -3,7 +3,7 @@
 import math
 import platform
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from navcore.analysis.judged import JudgedLoop, loop_value
@@ -16,17 +16,47 @@ from navcore.quantities import KINDS, NAMES, QUANTITIES, Quantity, limit_unit
 from navcore.scenario.fields import SCHEMA
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+from navcore.scenario.stochastic import drawn_as_zero
 
 POSITION_ERROR = NAMES[-1]
 
 
-def metrics(run: Run) -> dict[str, Any]:
+@dataclass(frozen=True)
+class SeedShare:
+    """Share of seeds on which a method meets the limits of a scenario, beside what one run says.
+
+    Attributes
+    ----------
+    seeds : int
+        Runs, each with its own noise and constants (`navcore.engine.ensemble.drawn`).
+    met : float
+        Share that meets all limits.
+    interval : tuple of float
+        Wilson interval of it, 95 %.
+    limits : tuple of (float, (float, float))
+        The same for each limit, in the scenario's order.
+    """
+
+    seeds: int
+    met: float
+    interval: tuple[float, float]
+    limits: tuple[tuple[float, tuple[float, float]], ...]
+
+    def as_dict(self, place: int | None = None) -> dict[str, Any]:
+        """Return the document of interface.md: of one limit by its place, or of all together."""
+        met, (low, high) = (self.met, self.interval) if place is None else self.limits[place]
+        return {"seeds": self.seeds, "met": met, "low": low, "high": high}
+
+
+def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
     """Return the metrics of a run as a document that JSON can hold.
 
     Parameters
     ----------
     run : Run
         From `navcore.engine.simulation.simulate`.
+    shares : sequence of SeedShare, optional
+        One a method: what seeds say of the limits.
 
     Returns
     -------
@@ -35,7 +65,9 @@ def metrics(run: Run) -> dict[str, Any]:
         ``computed_on`` (the steps that the statistics cover), ``warnings`` (about the scenario as a whole)
         and ``methods``. Each method has ``name``, ``status``, ``warnings``, ``loop``, ``law`` (the share of
         the output rows that were damped, the damping coefficient in force) and ``errors``, in SI units and
-        radians; ``requirements`` where the scenario has any. An infinite value, or one that is not a number,
+        radians; ``requirements`` where the scenario has any: each with its value, whether
+        it is met, the standard deviations that the run draws as 0, and the share of seeds that meet it. An
+        infinite value, or one that is not a number,
         is None.
 
     Examples
@@ -52,7 +84,10 @@ def metrics(run: Run) -> dict[str, Any]:
         "elapsed_s": round(run.elapsed_s, 4),
         "computed_on": run.computed_on,
         "warnings": list(run.warnings),
-        "methods": [_method(method) | _requirements(run.scenario, method) for method in run.methods],
+        "methods": [
+            _method(method) | _requirements(run.scenario, method, shares[k] if shares else None)
+            for k, method in enumerate(run.methods)
+        ],
     }
 
 
@@ -75,12 +110,16 @@ def begins_s(requirement: Requirement) -> float:
     return 0.0 if requirement.quantity in OF_THE_SETTING else requirement.from_h * HOUR
 
 
-def _requirements(scenario: Scenario, run: MethodRun) -> dict[str, Any]:
+def _requirements(scenario: Scenario, run: MethodRun, share: SeedShare | None) -> dict[str, Any]:
     rows = []
-    for one in scenario.requirement:
+    for place, one in enumerate(scenario.requirement):
         value, met = judged(one, run)
-        rows.append({**one.model_dump(mode="json", exclude_none=True), "value": value, "met": met})
-    return {"requirements": rows} if rows else {}
+        row = {**one.model_dump(mode="json", exclude_none=True), "value": value, "met": met}
+        row["drawn_as_zero"] = list(drawn_as_zero(scenario))
+        rows.append(row if share is None else row | {"share": share.as_dict(place)})
+    if not rows:
+        return {}
+    return {"requirements": rows} | ({} if share is None else {"share": share.as_dict()})
 
 
 def measure(run: MethodRun, key: str, from_s: float = 0.0) -> float:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from navcore.engine.measures import metrics
+from navcore.engine.measures import SeedShare, metrics
 from navcore.engine.run import Run
 from navcore.foundation.cells import safe_cell
 from navcore.foundation.inputs import opened
@@ -61,6 +61,7 @@ def write_results(
     folder: str | os.PathLike[str],
     format: Format = "parquet",
     reads: Iterable[str | os.PathLike[str]] = (),
+    shares: Sequence[SeedShare] = (),
 ) -> None:
     """Write scenario.toml, metrics.json and timeseries.parquet or .csv into a folder.
 
@@ -75,6 +76,8 @@ def write_results(
         Made with its parents when missing.
     format, reads
         See `require_results`.
+    shares
+        See `navcore.engine.measures.metrics`.
 
     Raises
     ------
@@ -83,7 +86,7 @@ def write_results(
     """
     names = _names(format)
     read = [*recordings(run.scenario), *reads]
-    document = json.dumps(metrics(run), indent=2, allow_nan=False) + "\n"
+    document = json.dumps(metrics(run, shares), indent=2, allow_nan=False) + "\n"
     with placing(folder, names, read) as hidden:
         _write_series(run, hidden / names[0])
         (hidden / METRICS_FILE).write_text(document, "utf-8")

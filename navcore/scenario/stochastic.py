@@ -23,6 +23,9 @@ CONSTANTS = (
 )
 """Constant sources of the budget: name, block, field of the standard deviation, field of the numbers."""
 
+_PARTS = {"initial_tilt": slice(0, 2), "initial_heading": slice(2, 3)}
+"""Numbers of a field that belong to one source, where two sources share the field."""
+
 
 @dataclass(frozen=True)
 class Drift:
@@ -114,6 +117,42 @@ def stated_constants(scenario: Scenario) -> frozenset[str]:
         for source, block, deviation, _ in CONSTANTS
         if getattr(getattr(scenario, block), deviation) is not None
     )
+
+
+def drawn_as_zero(scenario: Scenario) -> tuple[str, ...]:
+    """Fields of standard deviations that are given without a number: a run takes 0 for their constants.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+
+    Examples
+    --------
+    >>> from navcore import load
+    >>> drawn_as_zero(load("zha-fast", ["imu.gyro_bias_std_dph=0.01", "imu.gyro_bias_dph=[0,0,0]"]))
+    ('imu.gyro_bias_std_dph',)
+    """
+    fields = []
+    for source, block, deviation, number in CONSTANTS:
+        values = getattr(getattr(scenario, block), number)
+        part = _PARTS.get(source, slice(None))
+        if f"{block}.{deviation}" in given_deviations(scenario) and not np.any(np.atleast_1d(values)[part]):
+            fields.append(f"{block}.{deviation}")
+    return tuple(fields)
+
+
+def given_deviations(scenario: Scenario) -> tuple[str, ...]:
+    """Fields of standard deviations above 0 that the scenario gives and its seeds draw by."""
+    fields = []
+    for _, block, deviation, _ in CONSTANTS:
+        settings = getattr(scenario, block)
+        recorded = block == "imu" and settings.file is not None
+        if recorded or (block == "reference" and settings.kind != "log"):
+            continue
+        if np.any(getattr(settings, deviation) or 0.0):
+            fields.append(f"{block}.{deviation}")
+    return tuple(fields)
 
 
 def stochastic_model(scenario: Scenario) -> StochasticModel:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
+from navcore.scenario.stochastic import drawn_as_zero
 from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of
 from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots import style
@@ -76,7 +77,20 @@ def requirements_html(
         )
         for place in places
     )
-    return table([head], [*rows, *more, foot], look)
+    return table([head], [*rows, *more, foot], look) + (zero_html(run) if asked else "")
+
+
+def zero_html(run: Run) -> str:
+    """Say which constants the run takes as 0 though the scenario gives their spread; empty where none is."""
+    fields = ", ".join(drawn_as_zero(run.scenario))
+    if not fields:
+        return ""
+    said = Text(
+        "Drawn as 0 in this run, though a standard deviation is given: {fields}. The shares are of seeds "
+        "that draw them.",
+        fields=fields,
+    )
+    return cell(said, "sb-muted sb-zero", tag="p")
 
 
 def _box(key: str, label: str, text: str, refused: Mapping[str, int]) -> str:

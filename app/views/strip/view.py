@@ -10,6 +10,7 @@ from navcore.engine.run import ENDINGS, MethodRun, Run
 from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from navcore.scenario.stochastic import drawn_as_zero
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import COMMAND, hint, word
 from schuler_bench.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, wanted_unit
@@ -87,7 +88,7 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
         facts = [*_numbers(method, _before(found, name), display)]
         if limits:  # the verdict first: where a card has no room for all, the last ones are left out
             missed = [verdict.quantity.label for verdict in limits if not verdict.passed[place]]
-            facts.insert(0, _met(len(limits), missed))
+            facts.insert(0, _met(len(limits), missed, drawn_as_zero(run.scenario)))
         ended = Text.joined(", ", [words for words in (ENDINGS.get(method.status, ""), word(state)) if words])
         said = Text("<i>{words}</i>", words=ended) if ended else ""
         yield Text(
@@ -145,9 +146,11 @@ def _change(value: float, before: MethodRun | None, key: str) -> str:
     return f"{part:+d} %" if part else ""
 
 
-def _met(count: int, missed: list[str]) -> str:
+def _met(count: int, missed: list[str], zero: tuple[str, ...]) -> str:
     words, which = Text("{met} of {count}", met=count - len(missed), count=count), Text.joined(", ", missed)
     told = Text("misses {which}", which=which) if missed else Text("meets all limits")
+    if zero:
+        told = Text("{told}; drawn as 0 in this run: {fields}", told=told, fields=", ".join(zero))
     look = "sb-missed" if missed else "sb-met"
     return _number(
         Text("limits met"), told, Text('<span class="{look}">{words}</span>', look=look, words=words)
