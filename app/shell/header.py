@@ -12,7 +12,6 @@ from navcore.scenario.model import Scenario
 from schuler_bench.jobs import kernels
 from schuler_bench.plots import style
 from schuler_bench.plots.units import duration
-from schuler_bench.session.keeping import NotKept
 from schuler_bench.session.session import Session
 from schuler_bench.shell import notices
 from schuler_bench.shell.opening import Opening
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     import viser
 
 RUN_AGAIN, RUN_STRAPDOWN = Text("Run again"), Text("Run the strapdown")
-NOT_SAVED, _NOT_SAVED = Text("Your work is not saved at present"), Text("Not saved")
 _NAME = '<div class="sb-topbar" data-sb-part="name"><h1>Schuler Bench</h1></div>'
 WARNINGS = 30.0
 """Place in the left column of what is to be heeded: below the tabs, where it moves no control."""
@@ -69,12 +67,10 @@ class HeaderPanel:
                 order=1,
             )
             self._about = gui.add_html("", order=2)
-            self._unkept = gui.add_html("", order=9)
             self._state = gui.add_html("", order=10)
             self._progress = gui.add_progress_bar(0.0, visible=False, order=11)
             self._stop = gui.add_button(Text("Stop the run"), color="orange", visible=False, order=12)
             self._again = gui.add_button(RUN_AGAIN, visible=False, order=13)
-        self._keeping = gui.add_html("", visible=False, order=WARNINGS - 1)
         self._note = gui.add_html("", visible=False, order=WARNINGS)
         self._scenario.on_update(if_user(lambda: opening.choose_scenario(self._scenario.value)))
         self._stop.on_click(lambda _: session.cancel_run())
@@ -107,32 +103,6 @@ class HeaderPanel:
         """Hide or show the chooser of the scenario."""
         if self._scenario.visible == folded:
             self._scenario.visible = not folded
-
-    def show_keeping(self, fault: NotKept | None, unreadable: str) -> None:
-        """Say, as long as it is so, that the work is not kept; and what could not be read of it.
-
-        Parameters
-        ----------
-        fault : NotKept or None
-            None: it is kept.
-        unreadable : str
-            As of `Session`.
-        """
-        lines, chip = list[str](), ""
-        if fault is not None:
-            values = {"title": NOT_SAVED, "reason": fault.reason, "remedy": fault.remedy}
-            told = Text("{title}: {reason:sentence} {remedy}", **values)
-            lines.append(told)
-            chip = Text(
-                '<div class="sb-unkept" data-sb-part="unkept" role="status" title="{told:html}">{word}</div>',
-                told=told,
-                word=_NOT_SAVED,
-            )
-        if unreadable:
-            lines += [unreadable, Text("The tab Files offers it for download.")]
-        self._unkept.content = chip
-        self._keeping.content = notices.note(lines, "warning")
-        self._keeping.visible = bool(lines)
 
     def show_run(self, run: Run, number: int, *, outdated: bool, frame_ms: float) -> None:
         """Say which run the pictures show."""

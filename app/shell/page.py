@@ -27,7 +27,8 @@ from schuler_bench.shell.column import Column
 from schuler_bench.shell.commands import Commands
 from schuler_bench.shell.editor import Editor
 from schuler_bench.shell.following import Following
-from schuler_bench.shell.header import NOT_SAVED, HeaderPanel
+from schuler_bench.shell.header import HeaderPanel
+from schuler_bench.shell.keeping import KeepingPanel
 from schuler_bench.shell.layout import Columns, Layout, Window, layout_for
 from schuler_bench.shell.opening import Opening
 from schuler_bench.shell.pace import Pace
@@ -58,7 +59,6 @@ class Page:
     def __init__(self, client: viser.ClientHandle, session: Session, kinds: Sequence[type[View]]) -> None:
         self.client, self.session, self.gui = client, session, client.gui
         self._closed = self._built = self._tells = False
-        self._said_unkept = False
         self._window: Window = (0, 0, False, False, 1.0, Columns())
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -97,7 +97,7 @@ class Page:
             self._heard = gui.add_html("", order=3)
             self._picture = gui.add_html("", order=3)
             self.refresh()
-            self._show_keeping()
+            self._keeping.show()
             self._fold()
             for view in self._views:
                 self._faults.call(view.follow_display)
@@ -125,6 +125,7 @@ class Page:
         )  # fmt: skip
         focus = {kind.focus: kind.title for kind in kinds if kind.focus}
         self.header = HeaderPanel(gui, bar, opening, session, focus)
+        self._keeping = KeepingPanel(client, bar, session.keeping)
         self._views = [kind(frame) for kind in kinds]
         group = gui.add_tab_group(order=20)
         for view in self._views:
@@ -219,17 +220,7 @@ class Page:
 
     def keeping_changed(self) -> None:
         """The work is not kept over a restart at present, or no longer so."""
-        self._update(self._show_keeping)
-
-    def _show_keeping(self) -> None:
-        fault = self.session.keeping.fault
-        self.header.show_keeping(fault, self.session.keeping.unreadable)
-        if (fault is not None) != self._said_unkept:
-            self._said_unkept = fault is not None
-            if fault is not None:
-                lines = [Text("{reason:sentence}", reason=fault.reason), fault.remedy]
-                lines.append(Text("A download keeps the scenario."))
-                notices.tell(self.client, NOT_SAVED, lines, "warning")
+        self._update(self._keeping.show)
 
     def run_waits(self) -> None:
         """The changed scenario takes long: it runs when the user asks for it."""
