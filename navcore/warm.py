@@ -113,6 +113,21 @@ def warm_sensors() -> None:
                 pass
 
 
+def warm_checks() -> None:
+    """Compile what the check of a scenario needs: motions, errors of sensors and log; no law, no IMU."""
+    for motion in _MOTIONS:
+        environment(_scenario({"duration_h": 0.02}, motion, 1.0, [_NETWORK]))
+    _warm_track(environment)
+
+
+def compile_for_checks(progress: Callable[[str], None] = lambda what: None) -> None:
+    """Compile what `navcore.checks` needs of a scenario: a tenth of all; parameters as of `compile_once`."""
+    if not complete():
+        progress("those of a check are compiled, once: some seconds")
+        with _telling(progress):
+            warm_checks()
+
+
 def _scenario(
     run: dict[str, Any],
     motion: dict[str, Any],
@@ -132,13 +147,13 @@ def _scenario(
     )
 
 
-def _warm_track() -> None:
+def _warm_track(carry: Callable[[Scenario], object] = simulate) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "track.csv"
         rows = (f"{k},{0.5 + 1e-5 * k},{1e-5 * k},45.0\n" for k in range(120))
         path.write_text(_TRACK + "".join(rows), "utf-8")
         track = {"kind": "track", "file": str(path)}
-        simulate(_scenario({"duration_h": 0.02}, track, 1.0, [_NETWORK]))
+        carry(_scenario({"duration_h": 0.02}, track, 1.0, [_NETWORK]))
 
 
 def _warm_coarse_alignment() -> None:

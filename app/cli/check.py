@@ -111,13 +111,13 @@ def _is_preset(file: str) -> bool:
 
 
 def _compile_kernels() -> None:
-    """Compile what is missing: a bounded child has no time for it, and cannot keep it."""
+    """Compile what the check needs: a bounded child has no time for it, and cannot keep it."""
     from navcore.foundation.kernel_cache import ready
 
     if not ready():
-        from navcore.warm import compile_once
+        from navcore.warm import compile_for_checks
 
-        compile_once(lambda what: say(f"kernels: {what}"))
+        compile_for_checks(lambda what: say(f"kernels: {what}"))
 
 
 def check(file: str, map_file: str | None = None) -> FileReport:

@@ -242,7 +242,9 @@ def test_kernels_are_compiled_before_a_file_is_read_in_a_child(tmp_path, monkeyp
     file.write_text("schema = 1\n[[method]]\n")
     children = []
     monkeypatch.setattr("navcore.foundation.kernel_cache.complete", lambda: False)
-    monkeypatch.setattr("navcore.warm.compile_once", lambda progress: progress(f"{len(children)} children"))
+    monkeypatch.setattr(
+        "navcore.warm.compile_for_checks", lambda progress: progress(f"{len(children)} children")
+    )
     monkeypatch.setattr(guarded, "start", lambda *given: children.append(given))
     monkeypatch.setattr(guarded, "call", lambda file, *given: FileReport(file, ""))
     assert guarded_check(str(file)).ok

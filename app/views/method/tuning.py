@@ -1,12 +1,13 @@
 """In the tab "Method", below an adaptive policy: find its table for this scenario (Sun's double loop)."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
 
 from navcore.design.sun_settings import TuningSettings
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
 from navcore.questions.adapt import AdaptQuestion
@@ -111,22 +112,29 @@ class TuningPanel:
                 notices.tell(self._client, Text("The table cannot be used"), notices.fault_lines(error))
 
     def _edit(self, control: Control, by_slider: bool) -> None:
-        name, value = str(control.spec.path[-1]), control.take(by_slider)
-        if isinstance(value, float) and name == "realisations":
-            value = int(value)
-        data = self._fields | {name: value, "network": self._network}
+        name, entered = str(control.spec.path[-1]), control.take(by_slider)
+        data = self._fields | {name: entered, "network": self._network}
         try:
+            value = control.read(entered)
+            value = int(value) if control.spec.kind == "integer" else value
+            data[name] = value
             TuningSettings.model_validate(data)
-        except (ValidationError, InputError) as error:
-            faults = (
-                error.faults
-                if isinstance(error, InputError)
-                else faults_from(error, TuningSettings, data, "")
-            )
-            control.refuse([notices.refusal(fault, f"{self._fields.get(name, '')}") for fault in faults])
+        except InputError as error:
+            self._refuse(control, error.faults)
             return
+        except ValidationError as error:
+            self._refuse(control, faults_from(error, TuningSettings, data, ""))
+            return
+        except ValueError as error:  # text that is no number
+            self._refuse(control, [Fault("", "", entered, str(error))])
+            return
+        control.follow(value)
         self._fields[name] = value
         control.say("")
+
+    def _refuse(self, control: Control, faults: Iterable[Fault]) -> None:
+        kept = f"{self._fields.get(str(control.spec.path[-1]), '')}"
+        control.refuse([notices.refusal(fault, kept) for fault in faults])
 
 
 def tunable(method: Method) -> bool:
