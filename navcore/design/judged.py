@@ -94,21 +94,28 @@ class Designs(Answer):
             )
 
     def _needed(self) -> Iterator[str]:
+        """Say which figures are enough, least factor first, or that no single one is."""
         if not self.needed:
-            yield Text(
-                "no figure of a sensor, the log or the start is enough, not even {most:.0f} times better",
-                most=MOST,
-            )
             return
         yield Text("enough for the median of the seeds, with the settings below:")
         every = Text("all limits")
         for one in self.needed:
+            words = {"limit": one.quantity or every, "method": one.method}
+            if one.factor is None:
+                yield Text(
+                    "  {limit}: no single figure is enough, not even {most:.0f} times better ({method})",
+                    most=MOST,
+                    **words,
+                )
+                continue
             yield Text(
-                "  {limit}: {figures} {factor} times better ({method})",
-                limit=one.quantity or every,
+                "  {limit}: {figures} {factor} times better ({method}): met on {before} % of the seeds "
+                "before, {after} % after",
                 figures=", ".join(one.figures),
                 factor=number(one.factor, 3),
-                method=one.method,
+                before=number(100.0 * one.before, 3),
+                after="-" if one.after is None else number(100.0 * one.after, 3),
+                **words,
             )
 
 
