@@ -156,11 +156,12 @@ class Scheduler:
         return sum(t.load.lane is lane and self._is_away(t) for t in self._running)
 
     def _most(self, lane: Lane) -> int:
-        """Jobs of a lane at once; where nobody waits for it at every step, a core stays free for answers."""
+        """Jobs of a lane at once. Long runs leave a core to answers; spare work stands still meanwhile."""
         if lane is Lane.CLUSTER:
             return _MOST_ON_CLUSTER
-        most = self.cores if lane is Lane.ANSWER else max(1, self.cores - 1)
-        return min(most, _MOST_SPARE) if lane is Lane.SPARE else most
+        if lane is Lane.LONG:
+            return max(1, self.cores - 1)
+        return min(self.cores, _MOST_SPARE) if lane is Lane.SPARE else self.cores
 
     def take_back(self, ticket: Ticket) -> bool:
         """Remove a job that still waits; False when it does not, or not any more."""

@@ -21,7 +21,7 @@ from tests.waiting import until
 class Jobs:
     """Jobs that count their steps, and look at each whether they may go on, until they are let end."""
 
-    def __init__(self, cores: int = 2, memory: float = 100.0, away_s: float = 60.0) -> None:
+    def __init__(self, cores: int = 1, memory: float = 100.0, away_s: float = 60.0) -> None:
         self.turns = Scheduler(cores, memory, away_s=away_s)
         self.steps: dict[str, int] = {}
         self.ended: dict[str, str] = {}
@@ -68,7 +68,7 @@ def stop(jobs: Jobs, names: str) -> None:
 
 @pytest.mark.parametrize("lane", [Lane.SPARE, Lane.LONG])
 def test_work_of_who_is_away_takes_no_thread_from_those_who_are_there(lane: Lane) -> None:
-    """Two cores have one thread for spare work, which it would hold for minutes."""
+    """One core has one thread for spare work, which it would hold for minutes."""
     jobs = Jobs()
     jobs.put("a", "gone", lane)
     jobs.goes_on("a")

@@ -312,3 +312,17 @@ def test_lane_follows_the_estimated_time() -> None:
 def with_hours(hours: float) -> Scenario:
     scenario = load("sikuliaq-like")
     return scenario.model_copy(update={"run": scenario.run.model_copy(update={"duration_h": hours})})
+
+
+def test_what_two_have_asked_is_answered_side_by_side_while_a_core_is_idle() -> None:
+    """On two cores a search waited for the end of another one, and one core had nothing to do."""
+    line = Line(cores=2)
+    line.put("tune", "a", Lane.SPARE)
+    line.put("study", "b", Lane.SPARE)
+    line.put("third", "c", Lane.SPARE)
+    until(lambda: sorted(line.began) == ["study", "tune"])
+    line.put("answer", "d")
+    until(lambda: "answer" in line.began)  # it waits for none of them: they stand still meanwhile
+    assert "third" not in line.began
+    line.end("answer", "tune", "study", "third")
+    until(line.idle)
