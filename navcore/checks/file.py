@@ -22,7 +22,7 @@ from navcore.io.series import LeftOut, Recording, Series, SourceReport, StreamRe
 from navcore.io.source import require_file
 from navcore.io.stretches import stretch_warnings
 from navcore.io.suspects import suspect_warnings
-from navcore.io.times.doubts import gap_words
+from navcore.io.times.set_clocks import gap_doubt
 
 _SNIFFED_BYTES = 8192
 _NAMES = {
@@ -222,7 +222,7 @@ def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
     ]
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()
-        doubt = gap_words(series.time_s) if series.dated else ""
+        doubt = gap_doubt(series, recording.position)
         if doubt:
             existing.append(Text("{names}: {doubt}", names=_NAMES[name], doubt=doubt))
         elif gaps:

@@ -12,6 +12,7 @@ from navcore.io.nmea_lines import Sentences, Tally
 from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, OTHER_MESSAGE, decode
 from navcore.io.times.between import are_doubled, by_kind, coarse, filled, trusted
 from navcore.io.times.doubts import trust_of
+from navcore.io.times.repeats import there_again
 from navcore.io.times.steps import back_advice, without_leap_step
 
 JITTER_S = 0.2
@@ -160,9 +161,13 @@ class Gathered:
 
     def _tell_times(self, rows: np.ndarray) -> None:
         """Give every sentence its time, in place, and mark those that have none or one that cannot be."""
-        tally, given = self._tally, trusted(rows["time_s"], rows["doubtful"])
+        tally = self._tally
+        again = there_again(rows["time_s"], rows["own"], rows["id"], lambda: self._changes(rows))
+        rows["time_s"][again] = np.nan
+        rows["fate"][again & (rows["fate"] >= OTHER)] = REPEATED
+        given = trusted(rows["time_s"], rows["doubtful"])
         rows["time_s"][~given] = np.nan
-        clock = given & rows["own"]
+        clock = given & rows["own"] & ~again
         if tally.dated:
             mended, count, leaps = without_leap_step(rows["time_s"][clock])
             if count:
@@ -178,8 +183,8 @@ class Gathered:
                 )
         fates, ids = rows["fate"], rows["id"]
         stamps = np.where(rows["own"], np.nan, rows["time_s"])
-        again = coarse(stamps, rows["channel"], ids)
-        rows["time_s"][again] = np.nan
+        finer = coarse(stamps, rows["channel"], ids)
+        rows["time_s"][finer] = np.nan
         if are_doubled(np.where(rows["own"], rows["time_s"], np.nan), rows["channel"], ids):
             fates[self._repeated(rows) & (fates >= OTHER)] = REPEATED
         rows["time_s"], tally.spread = filled(rows["time_s"], np.where(fates < OTHER, -1, rows["channel"]))
@@ -200,6 +205,16 @@ class Gathered:
         for counter, fate in ((tally.untimed, UNTIMED), (tally.empty, EMPTY), (tally.late, LATE)):
             found = Counter(rows["kind"][fates == fate].tolist())
             counter.update({names[kind]: count for kind, count in found.items()})
+
+    def _changes(self, rows: np.ndarray) -> np.ndarray:
+        """Which sentences have another reading than the one of their channel before."""
+        found = np.zeros(len(rows), bool)
+        for parts in self._quantities.values():
+            row, values = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+            order = np.lexsort((row, rows["channel"][row]))
+            other = (np.diff(np.nan_to_num(values[order]), axis=0) != 0.0).any(axis=1)
+            found[row[order][1:][other & (np.diff(rows["channel"][row[order]]) == 0)]] = True
+        return found
 
     def _repeated(self, rows: np.ndarray) -> np.ndarray:
         """Which sentences without a time are the same as the one of their channel before, at one time."""

@@ -13,10 +13,11 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
+from navcore.io.choices import Source, choice_texts
 from navcore.io.column_map import ColumnMap, map_beside, read_map
 from navcore.io.formats import format_of, mapped_format
 from navcore.io.placeholders import without_zero_places
-from navcore.io.series import GAP_FACTOR, LONGEST_REACH_S, Recording, Series, utc_text
+from navcore.io.series import GAP_FACTOR, LONGEST_REACH_S, Recording, Series, SourceReport, utc_text
 from navcore.io.source import require_file
 from navcore.io.times.doubts import span_text
 from navcore.io.times.steps import reason_of
@@ -61,6 +62,8 @@ def load(
     paths: PathLike | Sequence[PathLike], where: str = "", field: str = "", map_file: PathLike | None = None
 ) -> Recording:
     """Read one or several files; each quantity comes from the first file of the list that holds it.
+
+    Of a quantity that several files hold, the warnings say which is taken and by how much the others differ.
 
     Parameters
     ----------
@@ -108,8 +111,20 @@ def load(
         quantities = part.quantities() | quantities
     if len({series.dated for series in quantities.values()}) > 1:
         raise InputError(Fault(where, field, None, _MIXED_DATES))
-    sources = tuple(source for part in parts for source in part.sources)
-    return Recording(**quantities, sources=sources)
+    return Recording(**quantities, sources=_with_choices(parts))
+
+
+def _with_choices(parts: list[Recording]) -> tuple[SourceReport, ...]:
+    """Account of the files, the last with what is said of quantities that several of them hold."""
+    distinct = list({id(part): part for part in parts}.values())
+    held: dict[str, list[Source]] = {}
+    for part in distinct if len(distinct) > 1 else ():
+        for name, series in part.quantities().items():
+            valid = series.valid
+            held.setdefault(name, []).append((series.source, series.time_s[valid], series.values[valid]))
+    told, _ = choice_texts(held.items())
+    *others, last = [source for part in parts for source in part.sources]
+    return (*others, replace(last, warnings=(*last.warnings, *told), choices=(*last.choices, *told)))
 
 
 def _map_of(key: FileKey, map_file: PathLike | None, where: str) -> tuple[FileKey | None, ColumnMap | None]:

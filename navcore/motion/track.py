@@ -18,7 +18,7 @@ from navcore.foundation.units import DEG
 from navcore.io.column_map import map_field
 from navcore.io.recording import MOST_BRIDGED, Window, load, require_cover, require_no_gap, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
-from navcore.io.times.doubts import gap_words
+from navcore.io.times.set_clocks import gap_doubt
 from navcore.motion.base import MotionParameters, Streams
 from navcore.motion.filling import sample
 from navcore.motion.kinematics import PIECES, Kinematics
@@ -127,7 +127,8 @@ class TrackMotion(MotionParameters):
         yield from streams.recording.warnings
         for series in streams.series():
             count, longest = series.gaps()
-            doubt = gap_words(series.time_s) if series.dated else ""
+            own = streams.recording.position
+            doubt = gap_doubt(series, own if own is not None and own.file == series.file else None)
             if doubt:
                 yield Text("{source}: {doubt}", source=series.source, doubt=doubt)
             elif count:

@@ -1,10 +1,12 @@
 """Streams that share no time for a known reason say which."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from navcore.foundation.errors import InputError
-from navcore.io.recording import shared_window
+from navcore.io.recording import load, shared_window
 from navcore.io.series import Series
 
 
@@ -30,3 +32,31 @@ def test_no_reason_is_made_up() -> None:
     with pytest.raises(InputError) as caught:
         shared_window([_series(1.6e9), _series(1.6e9 + 5.3e6)])
     assert "apart" not in str(caught.value)
+
+
+def _table(folder: Path, name: str, header: str, offset: float, begin_s: float = 0.0) -> Path:
+    path = folder / name
+    rows = [f"{1.7e9 + begin_s + k},{10.0 + offset}" for k in range(30)]
+    path.write_text("\n".join([f"unix_time,{header}", *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("header", "offset", "said"),
+    [
+        ("stw_kn", 1.5, "a.csv speed is taken (30), b.csv speed (30) is not used: they differ "
+                        "by 1.5 kn"),
+        ("heading_deg", 4.0, "a.csv heading_deg is taken (30), b.csv heading_deg (30) is not used: they "
+                             "differ by 4 °"),
+    ],
+)  # fmt: skip
+def test_a_quantity_of_two_files_is_compared(tmp_path: Path, header: str, offset: float, said: str) -> None:
+    files = [_table(tmp_path, "a.csv", header, 0.0), _table(tmp_path, "b.csv", header, offset)]
+    assert any(said in text for text in load(files).warnings)
+    assert not load(files[:1]).warnings and not load([files[0], files[0]]).warnings
+
+
+def test_files_one_after_the_other_are_said_not_to_be_joined(tmp_path: Path) -> None:
+    files = [_table(tmp_path, "a.csv", "stw_kn", 0.0), _table(tmp_path, "b.csv", "stw_kn", 0.0, 100.0)]
+    (told,) = load(files).warnings
+    assert "a.csv speed is taken" in told and "they share too little time" in told

@@ -235,3 +235,24 @@ def test_stamps_coarser_than_the_lines_are_spread(tmp_path: Path, seconds: int) 
     assert heading is not None
     assert heading.time_s.size == len(lines)
     assert np.diff(heading.time_s[:10]) == pytest.approx(seconds / 10.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("first", "second"), [((0, 40), (0, 40)), ((0, 30), (20, 40)), ((0, 40), (35, 40))])
+def test_lines_that_are_there_again_are_left_out(
+    tmp_path: Path, first: tuple[int, int], second: tuple[int, int]
+) -> None:
+    moving = {k: rmc(k, 38.0 + 1e-4 * k, 9.0, 5.0, 20.0) for k in range(40)}
+    whole = _log(tmp_path, moving).read_text().splitlines()
+    twice = [line for begin, end in (first, second) for line in whole[3 * begin : 3 * end]]
+    read = read_recording(path := write(tmp_path / "twice.txt", twice))
+    for series in (read.water, read.heading, read.position):
+        assert series is not None and series.time_s == pytest.approx(T0 + np.arange(40.0), abs=1e-6)
+    assert sum(_accounted(path).values()) == len(twice) - len(whole)
+    assert any("repeat" in text for text in check_file(path).warnings)
+
+
+def test_another_recording_behind_the_first_is_still_refused(tmp_path: Path) -> None:
+    whole = _log(tmp_path, {}).read_text().splitlines()
+    other = [sentence(rmc(k, 39.0, 9.0, 5.0, 20.0)) for k in range(40)]
+    with pytest.raises(InputError, match="runs backwards"):
+        read_recording(write(tmp_path / "other.txt", [*whole, *other]))

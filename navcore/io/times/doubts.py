@@ -7,7 +7,7 @@ import numpy as np
 
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.io.times.steps import DAY_S, reason_of
+from navcore.io.times.steps import DAY_S
 
 FIRST_YEAR = 1990
 _YEAR_S = 365.25 * DAY_S
@@ -75,26 +75,6 @@ def trust_of(time_s: np.ndarray, what: str) -> Trust:
         moment=moment_text(float(time_s[plausible].min())),
     )
     return Trust(plausible, [told])
-
-
-def gap_words(time_s: np.ndarray) -> str:
-    """Doubt of a gap in increasing Unix times, shape (n,), that is longer than all the rest; or empty."""
-    steps = np.diff(time_s)
-    if steps.size < 2:
-        return ""
-    at = int(np.argmax(steps))
-    longest, rest = float(steps[at]), float(steps.sum() - steps[at])
-    if longest <= rest or longest < HOUR:
-        return ""
-    interval = float(np.median(steps))
-    reason = reason_of(longest - interval, max(1.0, interval), float(time_s[at]))
-    told = Text(
-        "a gap of {gap} from {begin} to {end} is longer than all the rest: was the clock set there?",
-        gap=span_text(longest),
-        begin=moment_text(float(time_s[at])),
-        end=moment_text(float(time_s[at + 1])),
-    )
-    return Text("{told} It is an interval and {reason}", told=told, reason=reason) if reason else told
 
 
 def span_text(seconds: float) -> str:
