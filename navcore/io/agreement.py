@@ -2,29 +2,28 @@
 
 A log's scale cannot be told from a current while the ship keeps its course. When it turns, the current keeps
 its direction: scale and current come from least squares together. Without a heading a log's clock is told by
-the changes of its speed, and nothing else of it.
+the changes of its speed, and nothing else of it (`navcore.io.clocks`).
 """
 
-from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
+from navcore.foundation.earth import WGS84
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG, KNOT
+from navcore.foundation.units import HOUR, KNOT
+from navcore.io.clocks import Lag, lag_between
 from navcore.io.courses import SPEED_SLIPS, Way, under_way
 from navcore.io.plausible import slip_of
-from navcore.io.series import Recording, Series
+from navcore.io.series import Recording
 
 LARGEST_SCALE_ERROR = 0.07
 """Of a log whose scale is known well; units differ by 10 % and more."""
-SHORTEST_LAG_S = 12.0
-"""A ship's course follows its heading by several seconds; a clock that is off by less is not told."""
+SHORTEST_LAG_S = 8.0
+"""A ship's course follows its heading, and a log smooths its speed, by several seconds; less is not told."""
 _FEWEST = 60
 _MOST = 400
-_WIDEST_LAG_S = 3700.0
-_SHARE = 1.0 / 3.0
-"""Of the time that two streams share, by which they are shifted at most."""
 _SURE = 4.0
 _KNOWN = 0.05
 """Share of a factor up to which it may be unsure; tides and a straight course leave it unsure by more."""
@@ -44,9 +43,12 @@ _FAR_UNITS = {
 _WORST_CONDITION = 30.0
 _ALIKE = 30
 """Samples whose residuals are taken for one: currents and steering change slowly."""
-_BETTER = 0.5
-_LEAST_TURN = 2.0 * DEG
 _LEAST_SPEED_MPS = 0.15
+_LEG_S = 10.0
+"""Between the positions that give a velocity."""
+M2_S = 12.4206 * HOUR
+"""Period of the principal lunar tide."""
+_TIDAL_S = 3.0 * HOUR
 _WORDS = (Text("the speed through the water"), Text("the speed to starboard through the water"))
 
 
@@ -89,72 +91,91 @@ def findings(recording: Recording) -> list[Finding]:
     if way is None or way.time_s.size < _FEWEST:
         return []
     if recording.heading is None:
-        speeds = _of_speeds(recording.water, way)
-        return [] if speeds is None else _lagging("water", _WORDS[0], speeds[0], _LEAST_SPEED_MPS, speeds[1])
+        return _late("water", _WORDS[0], _speed_lag(recording))
     heading_s, heading = recording.heading.time_s, np.unwrap(recording.heading.values[:, 0])
     course = np.unwrap(np.arctan2(way.east, way.north))
-    found = _lagging(
-        "heading",
-        Text("the heading"),
-        lambda lag: _turning(heading_s, heading, way.time_s, course, lag),
-        _LEAST_TURN,
-        min(heading_s[-1], way.time_s[-1]) - max(heading_s[0], way.time_s[0]),
-    )
-    return found or _of_log(recording, way, heading_s, heading)
+    lag = lag_between(heading_s, heading, way.time_s, course[:, None])
+    return _late("heading", Text("the heading"), lag) or _of_log(recording, way, heading_s, heading)
 
 
 def clock_text(recording: Recording) -> str:
     """Time by which a log without a heading is late by the changes of its speed, or why it cannot be told."""
-    way = under_way(recording)
-    speeds = None if way is None or recording.heading is not None else _of_speeds(recording.water, way)
-    if speeds is None:
+    if recording.water is None or recording.heading is not None or under_way(recording) is None:
         return ""
-    misfit, span_s = speeds
-    if not misfit(np.inf) > _LEAST_SPEED_MPS:
+    lag = _speed_lag(recording)
+    if lag is None:
+        return ""
+    ground = _ground(recording)
+    change = 0.0 if ground is None else float(np.std(np.hypot(ground.east, ground.north)))
+    if not lag.related and change < _LEAST_SPEED_MPS:
         return Text(
             "the log's clock cannot be told without a heading: the speed over ground changes by {change:.2f} "
             "m/s (rms), at least {least} are needed",
-            change=misfit(np.inf),
+            change=change,
             least=_LEAST_SPEED_MPS,
         )
-    lag_s, reach_s, left = _shift(misfit, misfit(np.inf), span_s)
-    if left > _BETTER * misfit(np.inf):
+    if not lag.related:
         return Text(
             "the log's clock cannot be told without a heading: its speed and that over ground do not change "
             "together"
         )
     return Text(
-        "the log is {lag:+.0f} s (± {reach:.0f} s) late by the changes of its speed", lag=lag_s, reach=reach_s
+        "the log is {lag:+.1f} s (± {reach:.1f} s) late by the changes of its speed",
+        lag=lag.late_s,
+        reach=lag.reach_s,
     )
 
 
-def _of_speeds(water: Series | None, way: Way) -> tuple[Callable[[float], float], float] | None:
-    """Rest of the changes over ground that the speed through the water leaves, m/s, by the time it is late.
-
-    And the time that both share, s. Each shift leaves its share of what changes while both are there, so that
-    a steady part does not fit by itself. A log that is infinitely late says nothing: all changes are left.
-    """
-    kept = np.flatnonzero(water.valid) if water is not None else np.array([], dtype=int)
-    if water is None or kept.size < _FEWEST or way.time_s.size < _FEWEST:
+def _speed_lag(recording: Recording) -> Lag | None:
+    """Lag of the speed through the water against that over ground; None without both."""
+    ground = _ground(recording)
+    if recording.water is None or ground is None:
         return None
-    time_s, speed = water.time_s[kept], np.hypot(*water.values[kept].T)
-    ground = np.hypot(way.east, way.north)
-    changes = float(np.std(ground))
+    kept = recording.water.valid
+    speed = np.hypot(*recording.water.values[kept].T)
+    return lag_between(
+        recording.water.time_s[kept], speed, ground.time_s, np.hypot(ground.east, ground.north)[:, None]
+    )
 
-    def misfit(lag_s: float) -> float:
-        if np.isinf(lag_s):
-            return changes
-        inside = np.flatnonzero((time_s - lag_s >= way.time_s[0]) & (time_s - lag_s <= way.time_s[-1]))
-        inside = inside[:: max(1, inside.size // _MOST)]
-        if inside.size < _FEWEST:
-            return np.inf
-        over = np.interp(time_s[inside] - lag_s, way.time_s, ground)
-        own = speed[inside] - speed[inside].mean()
-        sizes = np.linalg.norm(own) * np.linalg.norm(over - over.mean())
-        alike = max(float(own @ over / sizes), 0.0) if sizes > 0.0 else 0.0
-        return changes * np.sqrt(max(1.0 - alike**2, 0.0))
 
-    return misfit, float(min(time_s[-1], way.time_s[-1]) - max(time_s[0], way.time_s[0]))
+def _forward_lag(recording: Recording, heading_s: np.ndarray, heading: np.ndarray) -> Lag | None:
+    """Lag of the speed forward against that over ground, with a current and a tide that are not known."""
+    ground = _ground(recording)
+    if recording.water is None or ground is None:
+        return None
+    kept = recording.water.valid
+    inside = (ground.time_s >= heading_s[0]) & (ground.time_s <= heading_s[-1])
+    time_s = ground.time_s[inside]
+    if time_s.size < _FEWEST:
+        return None
+    angle = np.interp(time_s, heading_s, heading)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    columns = [ground.east[inside] * sine + ground.north[inside] * cosine, sine, cosine]
+    if time_s[-1] - time_s[0] > _TIDAL_S:
+        phase = 2.0 * np.pi * (time_s - time_s[0]) / M2_S
+        columns += [axis * wave for axis in (sine, cosine) for wave in (np.sin(phase), np.cos(phase))]
+    water = recording.water
+    return lag_between(water.time_s[kept], water.values[kept, 1], time_s, np.column_stack(columns))
+
+
+def _ground(recording: Recording) -> Way | None:
+    """Velocity over ground at its full rate and at any speed; by positions over some seconds without it."""
+    velocity, position = recording.velocity, recording.position
+    if velocity is not None and np.count_nonzero(velocity.valid) >= _FEWEST:
+        return Way(velocity.time_s[velocity.valid], *velocity.values[velocity.valid].T)
+    if position is None or np.count_nonzero(position.valid) < _FEWEST:
+        return None
+    time_s, values = position.time_s[position.valid], position.values[position.valid]
+    apart = max(1, round(_LEG_S / max(position.interval_s, 1e-3)))
+    if time_s.size <= apart + _FEWEST:
+        return None
+    lat, lon = values[:, 0], np.unwrap(values[:, 1])
+    meridian, prime_vertical = WGS84.radii(float(np.median(lat)))
+    steps = time_s[apart:] - time_s[:-apart]
+    north = (lat[apart:] - lat[:-apart]) * meridian / steps
+    east = (lon[apart:] - lon[:-apart]) * prime_vertical * np.cos(lat[:-apart]) / steps
+    whole = steps < 2.0 * apart * position.interval_s
+    return Way(*(column[whole] for column in (time_s[:-apart] + 0.5 * steps, east, north)))
 
 
 def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.ndarray) -> list[Finding]:
@@ -168,13 +189,13 @@ def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.n
     used = [1, 0] if np.abs(speeds[:, 0]).max() > 0.0 else [1]
     begin, end = max(way.time_s[0], heading_s[0]), min(way.time_s[-1], heading_s[-1])
 
-    def fit(lag_s: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """Factors of the speeds, their deviations, and the rms of what is left, m/s."""
-        inside = np.flatnonzero((time_s - lag_s >= begin) & (time_s - lag_s <= end))
+    def fit() -> tuple[np.ndarray, np.ndarray]:
+        """Factors of the speeds and their deviations."""
+        inside = np.flatnonzero((time_s >= begin) & (time_s <= end))
         inside = inside[:: max(1, inside.size // _MOST)]
         if inside.size < _FEWEST:
-            return np.ones(len(used)), np.full(len(used), np.inf), np.inf
-        at = time_s[inside] - lag_s
+            return np.ones(len(used)), np.full(len(used), np.inf)
+        at = time_s[inside]
         angle = np.interp(at, heading_s, heading)
         sine, cosine, one, none = np.sin(angle), np.cos(angle), np.ones(at.size), np.zeros(at.size)
         axes = {1: (sine, cosine), 0: (cosine, -sine)}
@@ -183,16 +204,15 @@ def _of_log(recording: Recording, way: Way, heading_s: np.ndarray, heading: np.n
         ground = np.concatenate([np.interp(at, way.time_s, way.east), np.interp(at, way.time_s, way.north)])
         size = np.linalg.norm(design, axis=0)
         if not size.all() or np.linalg.cond(design / size) > _WORST_CONDITION:
-            return np.ones(len(used)), np.full(len(used), np.inf), np.inf
+            return np.ones(len(used)), np.full(len(used), np.inf)
         found, _, _, _ = np.linalg.lstsq(design, ground, rcond=None)
         left = float(np.std(ground - design @ found))
         spread = left * np.sqrt(_ALIKE * np.diag(np.linalg.inv(design.T @ design)))
-        return found[: len(used)], spread[: len(used)], left
+        return found[: len(used)], spread[: len(used)]
 
-    span_s = min(end, time_s[-1]) - max(begin, time_s[0])
-    if late := _lagging("water", _WORDS[0], lambda lag: fit(lag)[2], _LEAST_SPEED_MPS, span_s):
+    if late := _late("water", _WORDS[0], _forward_lag(recording, heading_s, heading)):
         return late
-    factors, spread, _ = fit(0.0)
+    factors, spread = fit()
     return list(_scales(factors, spread))
 
 
@@ -223,59 +243,16 @@ def _scales(factors: np.ndarray, spread: np.ndarray) -> Iterable[Finding]:
         yield Finding(told, "water", factor=float(factor) if what == _WORDS[0] else 1.0)
 
 
-def _turning(
-    heading_s: np.ndarray, heading: np.ndarray, time_s: np.ndarray, course: np.ndarray, lag_s: float
-) -> float:
-    """Deviation of heading minus course, rad, when the heading's times are ``lag_s`` too late."""
-    inside = np.flatnonzero((time_s + lag_s >= heading_s[0]) & (time_s + lag_s <= heading_s[-1]))
-    inside = inside[:: max(1, inside.size // _MOST)]
-    if inside.size < _FEWEST:
-        return np.inf
-    off = np.interp(time_s[inside] + lag_s, heading_s, heading) - course[inside]
-    middle = np.angle(np.mean(np.exp(1j * off)))
-    return float(np.sqrt(np.mean(((off - middle + np.pi) % (2.0 * np.pi) - np.pi) ** 2)))
-
-
-def _lagging(
-    stream: str, what: str, misfit: Callable[[float], float], least: float, span_s: float
-) -> list[Finding]:
-    """Tell the time by which a stream is late, if shifted by it the stream fits twice as well."""
-    now = misfit(0.0)
-    if not least < now < np.inf:
+def _late(stream: str, what: str, lag: Lag | None) -> list[Finding]:
+    """Tell the time by which a stream is late, where the likelihood of its fast changes says so."""
+    if lag is None or not lag.shifted or abs(lag.late_s) < SHORTEST_LAG_S:
         return []
-    lag_s, reach_s, left = _shift(misfit, now, span_s)
-    if abs(lag_s) < SHORTEST_LAG_S or left > _BETTER * now:
-        return []
-    late_s = _refined(misfit, lag_s, _step(span_s))
+    late_s = round(lag.late_s, 1)
     told = Text(
-        "{what} is {lag:+.0f} s (± {reach:.0f} s) late against the motion over ground: clocks of two "
+        "{what} is {lag:+.1f} s (± {reach:.1f} s) late against the motion over ground: clocks of two "
         "loggers? Shift its times",
         what=what,
         lag=late_s,
-        reach=reach_s,
+        reach=lag.reach_s,
     )
     return [Finding(told, stream, late_s=late_s)]
-
-
-def _step(span_s: float) -> float:
-    return max(2.0, min(_WIDEST_LAG_S, _SHARE * span_s) / 100.0)
-
-
-def _shift(misfit: Callable[[float], float], now: float, span_s: float) -> tuple[float, float, float]:
-    """Time on a grid that fits best, by how much it is unsure, and what it leaves."""
-    step = _step(span_s)
-    count = int(min(_WIDEST_LAG_S, _SHARE * span_s) / step)
-    lags = step * np.arange(-count, count + 1)
-    sizes = np.array([misfit(float(lag)) for lag in lags])
-    best = int(np.argmin(sizes))
-    near = lags[sizes <= sizes[best] + 0.1 * (now - sizes[best])]
-    return float(lags[best]), 0.5 * float(np.ptp(near)) + step, float(sizes[best])
-
-
-def _refined(misfit: Callable[[float], float], lag_s: float, step_s: float) -> float:
-    """Time within a step of one on the grid that fits best, to whole seconds."""
-    from scipy.optimize import minimize_scalar
-
-    near = (lag_s - step_s, lag_s + step_s)
-    found: Any = minimize_scalar(misfit, bounds=near, method="bounded", options={"xatol": 0.25})
-    return float(round(found.x))

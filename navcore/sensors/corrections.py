@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from navcore.sensors.reference import Reference
 
 _DIGITS = 4
-"""Of a factor; times are whole seconds."""
+"""Of a factor; times are given to 0.1 s."""
 Field = tuple[str, str]
 """Block and field of the scenario."""
 
@@ -84,9 +84,11 @@ def _made(motion: TrackMotion, reference: Reference) -> tuple[Correction, ...]:
 
 def _correction(found: Finding, motion: TrackMotion, reference: Reference) -> Correction:
     if found.stream == "heading":
-        return Correction(found.text, ("motion", "heading_clock_s"), motion.heading_clock_s - found.late_s)
+        return Correction(
+            found.text, ("motion", "heading_clock_s"), round(motion.heading_clock_s - found.late_s, 1)
+        )
     if reference.kind == "file" and found.late_s:
-        return Correction(found.text, ("reference", "clock_s"), reference.clock_s - found.late_s)
+        return Correction(found.text, ("reference", "clock_s"), round(reference.clock_s - found.late_s, 1))
     if reference.kind == "file" and found.factor != 1.0:
         return Correction(
             found.text, ("reference", "factor"), round(reference.factor * found.factor, _DIGITS)
