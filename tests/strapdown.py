@@ -30,7 +30,7 @@ DENG_SWING = SwingMotion(
     roll=Oscillation(amplitude_deg=12.0, frequency_hz=0.125),
     heading=Oscillation(amplitude_deg=6.0, frequency_hz=0.15),
 )
-"""Three-axis swing of Deng 2019, 4.1."""
+"""Three-axis swing of Deng 2019, section 3."""
 
 DRIVE = LegsMotion(
     heading_deg=30.0,

@@ -1,4 +1,4 @@
-"""A gyrocompass while navigating: the azimuth loop of the alignment on the log (Deng 5, theory.md 3.8)."""
+"""A gyrocompass while navigating: the azimuth loop of the alignment on the log (theory.md 3.8)."""
 
 from collections.abc import Iterator
 from typing import ClassVar

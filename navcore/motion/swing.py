@@ -68,7 +68,7 @@ class Oscillation(Parameters):
 
 
 class SwingMotion(AttitudeMotion):
-    """The vehicle swings about a mean attitude at one place (Deng 2019, 4.1: three-axis swing).
+    """The vehicle swings about a mean attitude at one place (Deng 2019, section 3: three-axis swing).
 
     Each angle is ``mean + amplitude sin(2 pi frequency t + phase)``; the means are pitch_deg, roll_deg and
     heading_deg.

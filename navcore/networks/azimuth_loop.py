@@ -1,4 +1,4 @@
-"""Loops of the azimuth channel, and the gains of a gyrocompass (theory.md 6.1, Deng 5)."""
+"""Loops of the azimuth channel, and the gains of a gyrocompass (theory.md 6.1)."""
 
 from typing import NamedTuple
 

@@ -149,6 +149,39 @@ def test_the_membership_functions_stand_beneath_the_loop_of_their_policy() -> No
     assert beneath(run, 1) == ""
 
 
+@pytest.mark.parametrize(
+    ("method", "told"),
+    [
+        (
+            {"policy": {"id": "variation", "count": 7, "n_s": 30.0}, "switching": {"id": "ramp"}},
+            ("n = 30 s, t₀ = 80 s", "s ≤ 0.25: damp", "m = 7?", "clear the states", "ζ = ξ exp(m - 49)"),
+        ),
+        (
+            {"policy": {"id": "adaptive", "law": "as_printed"}, "switching": {"id": "step", "size": 0.2}},
+            ("low-pass 100 s", "(9) as printed", "by at most 0.2", "every 120 s"),
+        ),
+        ({"policy": {"id": "variation"}, "switching": {"id": "hard"}}, ("s ≥ 0.45: do not damp",)),
+    ],
+    ids=["Liu 9 and 10", "Sun 8", "Liu 9"],
+)
+def test_the_flow_chart_of_a_decision_has_the_values_of_the_method(
+    method: dict, told: tuple[str, ...]
+) -> None:
+    external = {"damping": "external", "network": {"id": "unity2"}, **method}
+    run = run_of("liu-switching", external, METHODS["feedback"], motion={"kind": "static"})
+    svg = beneath(run, 0)
+    assert [words for words in told if words not in svg] == []
+    assert ("clear the states" in svg) is (method["switching"]["id"] == "ramp")
+    assert beneath(run, 1) == ""
+
+
+def test_no_box_of_a_flow_chart_reaches_beyond_its_picture() -> None:
+    external = {"damping": "external", "network": {"id": "unity2"}, "policy": {"id": "variation"}}
+    svg = beneath(run_of("liu-switching", external, motion={"kind": "static"}), 0)
+    ends = [float(x) + float(w) for x, w in re.findall(r'<rect x="([\d.]+)"[^>]* width="([\d.]+)"', svg)]
+    assert ends and max(ends) <= 780.0
+
+
 def test_the_forecast_stands_beneath_the_loop_of_averaging() -> None:
     """A mean is drawn as a level line over half a sidereal day, a fit of order 1 as a sloping one."""
     averaging = {"damping": "averaging"}

@@ -8,6 +8,7 @@ from schuler_bench.plots import style
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.view import Frame, PictureView, Tab
 from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.flow import flow_svg
 from schuler_bench.views.diagram.forecast import forecast_svg
 from schuler_bench.views.diagram.membership import membership_svg
 from schuler_bench.views.diagram.svg import diagram_svg
@@ -87,13 +88,14 @@ def state_at(method: MethodRun, t_s: float) -> State:
 
 
 def beneath(run: Run, index: int) -> str:
-    """Forecast of an averaging method, membership functions of the policy `variation`; else empty."""
+    """Forecast of an averaging method; membership functions and flow chart of what a paper draws."""
     method = run.scenario.method[index]
     if method.kind.carrying == "copies":
         return forecast_svg(run, index)
-    if isinstance(method.policy, Variation) and not method.undamped:
-        return membership_svg(method.policy)
-    return ""
+    if method.undamped:
+        return ""
+    functions = membership_svg(method.policy) if isinstance(method.policy, Variation) else ""
+    return Text.joined("", [functions, flow_svg(method)])
 
 
 VIEW = DiagramView
