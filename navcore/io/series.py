@@ -10,6 +10,9 @@ from navcore.foundation.text import Text
 
 GAP_FACTOR = 3.0
 """A gap is a distance of two samples beyond this many median intervals."""
+_BURSTS = 20.0
+"""Mean intervals; a longer step is a gap, not the pause between bursts."""
+_RARE, _FEW = 0.02, 50
 _SAME_S = 1e-3
 """Readings no farther apart are at one time."""
 LONGEST_REACH_S = 2.0
@@ -78,6 +81,21 @@ def median_interval(time_s: np.ndarray) -> float:
     return float(np.median(np.diff(time_s))) if time_s.size > 1 else 0.0
 
 
+def rate_of(time_s: np.ndarray) -> float:
+    """Rate of increasing times, Hz: intervals over their time, both without the gaps; NaN for fewer than two.
+
+    A gap is a step beyond `GAP_FACTOR` median intervals where these are rare. Where they are not, the stamps
+    come in bursts, and the median is not the interval: a gap is then a step beyond 20 mean intervals.
+    """
+    steps = np.diff(time_s)
+    long = steps > GAP_FACTOR * median_interval(time_s)
+    if np.count_nonzero(long) <= max(1.0, _RARE * steps.size) or steps.size < _FEW:
+        steps = steps[~long]
+    else:
+        steps = steps[steps <= _BURSTS * steps.mean()]
+    return float(steps.size / steps.sum()) if steps.size and steps.sum() > 0.0 else float("nan")
+
+
 def gaps_of(time_s: np.ndarray) -> tuple[int, float]:
     """Count of gaps (beyond `GAP_FACTOR` median intervals) and the longest one, s."""
     steps = np.diff(time_s)
@@ -129,7 +147,7 @@ class StreamReport:
     start_s, end_s : float
         UTC of the first and the last one; NaN where unknown.
     rate_hz : float
-        1 / median interval (kinds not used: count / span, since they often come in bursts); NaN if unknown.
+        Count over the span without its gaps: stamps that jitter, or several of one arrival, do not change it.
     gaps : int
         Distances beyond three median intervals; not counted for kinds that are not used.
     longest_gap_s : float
@@ -152,9 +170,8 @@ def stream_report(name: str, count: int, used: bool, times: Iterable[float]) -> 
     if time_s.size == 0:
         return StreamReport(name, count, used)
     span = float(time_s[-1] - time_s[0])
-    interval = median_interval(time_s) if used else span / max(time_s.size - 1, 1)
-    rate = 1.0 / interval if interval > 0.0 else float("nan")
     gaps = gaps_of(time_s) if used else (0, 0.0)
+    rate = rate_of(time_s) if used else (time_s.size - 1) / span if span > 0.0 else float("nan")
     return StreamReport(name, count, used, float(time_s[0]), float(time_s[-1]), rate, *gaps)
 
 
