@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from navcore.design.budget import Budget
@@ -12,8 +11,8 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
+from navcore.questions.run import Ran
 from navcore.scenario.model import Scenario
-from schuler_bench.cli.run_text import run_text
 from schuler_bench.plots.plotly_data import Packed, PlotlyFigure
 from schuler_bench.plots.saved import time_figure
 from schuler_bench.session.display import Display
@@ -77,12 +76,7 @@ def budget_bars(budget: Budget) -> Figure:
 
 def run_tables(run: Run) -> str:
     """Write the tables of ``schuler run`` as HTML."""
-    return _as_html(run_text(run))
-
-
-def _as_html(lines: list[str]) -> str:
-    text = escape("\n".join(lines))
-    return f'<pre style="white-space: pre; overflow-x: auto">{text}</pre>'
+    return str(Ran(run).html())
 
 
 def _figure_of(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> Figure:

@@ -36,6 +36,8 @@ class AskingCommand:
         answer = self._answered(question, given, reads)
         self._written(question, answer, given, reads)
         emit_result(given["json"], answer.document(), answer.lines)
+        for text in answer.complaints():
+            say(f"{self._source(given)}: {text}")
         if not answer.complete:
             say(f"{self._source(given)}: stopped; {answer.so_far}")
         return 3 if answer.failed or not answer.complete else 0

@@ -16,7 +16,6 @@ from schuler_bench.cli.bench import BenchCommand
 from schuler_bench.cli.check import CheckCommand
 from schuler_bench.cli.network import NetworkCommand
 from schuler_bench.cli.presets import PresetsCommand
-from schuler_bench.cli.run import RunCommand
 from schuler_bench.cli.serve import ServeCommand
 from schuler_bench.cli.study import SCHEDULER, OnCluster
 from schuler_bench.cli.terminal import emit, lost
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 _DESCRIPTION = "Design and judge the damping of inertial navigation systems."
 _COMMANDS = {
     "serve": ServeCommand,
-    "run": RunCommand,
     "network": NetworkCommand,
     "presets": PresetsCommand,
     "check": CheckCommand,

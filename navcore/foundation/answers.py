@@ -113,6 +113,10 @@ class Answer:
         """What it is when it was stopped, as the end of a sentence."""
         return Text("this is what was found so far")
 
+    def complaints(self) -> Iterable[str]:
+        """Give what went wrong in parts of it, for stderr."""
+        return ()
+
     def document(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         raise NotImplementedError

@@ -10,6 +10,7 @@ from navcore.questions.base import Question
 QUESTIONS: dict[str, type[Question]] = registry(
     Question,
     "id",
+    "navcore.questions.run:RunQuestion",
     "navcore.questions.budget:BudgetQuestion",
     "navcore.questions.tune:TuneQuestion",
     "navcore.questions.profile:ProfileQuestion",

@@ -8,7 +8,7 @@ import plotly.graph_objects as go
 import pytest
 
 from navcore import InputError, budget, load, parse_network, simulate
-from schuler_bench.cli.run_text import run_text
+from navcore.questions.run import Ran
 from schuler_bench.notebook import OF_NETWORK, OF_RUN
 
 RUN = simulate(load("liu-switching", ["run.duration_h=2"]))
@@ -68,7 +68,8 @@ class Text(HTMLParser):
 
 def test_a_run_as_a_cell_s_last_line_is_the_tables_of_the_command() -> None:
     run = simulate(load("liu-switching", ["run.duration_h=0.1", "title=a<b> & c"]))
-    assert Text(run._repr_html_()).shown == "\n".join(run_text(run))
+    shown = Text(run._repr_html_()).shown
+    assert "".join(shown.split()) == "".join("".join(Ran(run).lines()).split())
     assert repr(run).startswith("<Run 'a<b> & c', error_model, 0.1 h; ") and len(repr(run)) < 300
     assert all(f"{method.method.name!r}: ok" in repr(run) for method in run.methods)
     assert len(repr(run.methods)) < 300

@@ -179,7 +179,7 @@ class MetricsView(PictureView[tuple[str, str]]):
     title = Text("Metrics")
     place = "lower"
     group = "run"
-    asks = ("why",)
+    asks = ("run", "why")
     look_for = Text("The best number of each row is marked; below, which error source it comes from.")
 
     def build(self, tab: Tab) -> None:
