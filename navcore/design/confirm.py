@@ -1,7 +1,7 @@
 """A proposal beside the present setting, both run on the same seeds (design.md, tuning)."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from navcore.engine.ensemble import Outcome, outcomes
 from navcore.engine.measures import begins_s, run_value
+from navcore.foundation.answers import number
 from navcore.foundation.errors import Fault, UnstableError
 from navcore.foundation.text import Text
 from navcore.quantities import KINDS, QUANTITIES, limit_unit
@@ -17,6 +18,8 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
 
 SEEDS = 32
+MUCH = 0.2
+"""Relative growth of an error from which a proposal says so."""
 _COMPARED = tuple(f"{kind.name}_rms" for kind in KINDS)
 
 
@@ -54,10 +57,33 @@ class Confirmed:
     changes : dict of Change
         Root mean squares of the run by their names, SI; limited quantities of the scenario in the unit of
         their name.
+    objective : Change or None
+        What was made small, each term over its mean before; None where runs do not measure it.
     """
 
     seeds: int
     changes: Mapping[str, Change]
+    objective: Change | None = None
+
+    @property
+    def gains(self) -> bool | None:
+        """Whether the objective is smaller beyond chance; None where runs do not measure it."""
+        if self.objective is None:
+            return None
+        return self.objective.high is None or self.objective.high < 0.0
+
+    def worse(self) -> Iterator[str]:
+        """Name what is much larger after it: beyond chance, and by more than `MUCH`."""
+        for name, change in self.changes.items():
+            if change.before is None or change.after is None or change.low is None or change.low <= 0.0:
+                continue
+            if change.after > (1.0 + MUCH) * change.before:
+                yield Text(
+                    "{name} is {times} times as large after it, over {seeds} seeds of the run",
+                    name=name,
+                    times=number(change.after / change.before, 3) if change.before else "infinitely many",
+                    seeds=self.seeds,
+                )
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""
@@ -84,6 +110,7 @@ def confirmed(
     before: Method,
     after: Method,
     seeds: int = SEEDS,
+    terms: Sequence[tuple[str, float]] = (),
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Confirmed | None:
@@ -97,6 +124,8 @@ def confirmed(
         Present setting and proposal.
     seeds : int
         Runs of each; at least 2.
+    terms : sequence of (str, float)
+        Of the objective: names and weights.
     progress, cancelled : callable, optional
         As of `navcore.engine.ensemble.outcomes`.
 
@@ -125,7 +154,18 @@ def confirmed(
             begins, unit = begins_s(one), limit_unit(one.quantity)
             pairs = [[_value(each, one.quantity, begins) / unit for each in pair] for pair in found]
             changes[one.quantity] = _change(pairs)
-    return Confirmed(seeds, changes)
+    return Confirmed(seeds, changes, _objective(found, terms))
+
+
+def _objective(found: Sequence[tuple[Outcome, ...]], terms: Sequence[tuple[str, float]]) -> Change | None:
+    if not terms or not {name for name, _ in terms} <= {*_COMPARED}:
+        return None
+    total = np.zeros((len(found), 2))
+    for name, weight in terms:
+        pairs = np.array([[_value(one, name, 0.0) for one in pair] for pair in found])
+        before = pairs[:, 0].mean()
+        total += weight * pairs / (before if math.isfinite(before) and before > 0.0 else 1.0)
+    return _change(total.tolist())
 
 
 def _value(outcome: Outcome, name: str, from_s: float) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from navcore.analysis import Loop, analyse
 from navcore.analysis.filter_loop import filter_loop
+from navcore.analysis.heading_settling import heading_settling
 from navcore.analysis.held_log import held_log
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.whole_system import WholeSystem, duration, whole_system
@@ -72,6 +73,14 @@ class Setting:
         return whole_system(
             kind.acting(self.network), *place, azimuth=kind.azimuth(self.method, self.network.omega_s)
         )
+
+    @cached_property
+    def heading_settling_s(self) -> float:
+        """Settling of the heading that an azimuth loop holds; infinite where nothing holds it."""
+        scenario, kind = self.ship.scenario, self.method.kind
+        azimuth = kind.azimuth(self.method, self.network.omega_s) if kind.uses_network else None
+        place = scenario.site.lat_deg * DEG, scenario.earth, scenario.site.height_m
+        return heading_settling(kind.acting(self.network), *place, azimuth)
 
     @cached_property
     def growth_per_s(self) -> float:

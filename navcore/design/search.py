@@ -91,6 +91,10 @@ class Search:
         values = self.values(places)
         return [Setting(ship, changed(ship.scenario, self.varied, values)) for ship in self.ships]
 
+    def now(self) -> list[Setting]:
+        """Return the method as it is set, on each ship."""
+        return [Setting(ship, ship.scenario.method[self.varied[0].method]) for ship in self.ships]
+
     def values(self, places: np.ndarray) -> list[float]:
         """Values of the fields at places 0..1 of their ranges."""
         return [one.value(float(place)) for one, place in zip(self.varied, places, strict=True)]

@@ -7,7 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from navcore.design.confirm import confirmed
-from navcore.design.default_limits import limits_by_default, own_limits, require_consistent, without_defaults
+from navcore.design.default_limits import (
+    heading_limit,
+    limits_by_default,
+    own_limits,
+    require_consistent,
+    without_defaults,
+)
 from navcore.design.limits_cost import flat_ranges, nothing_meets, without_limits
 from navcore.design.measures import (
     TUNING_INTERVALS,
@@ -126,36 +132,43 @@ def tune(
             else _confirmed(found, scenario, index, wanted, part_of(progress, begin, end), cancelled)
         )
 
+    def offered(found: Tuned) -> Tuned:
+        return _offered(found, scenario, varied)
+
     if not confirm:
         return searched(along, 0.0, 1.0)
     if along:
-        return in_runs(searched(True, 0.0, 0.8), 0.8, 1.0)
+        return offered(in_runs(searched(True, 0.0, 0.8), 0.8, 1.0))
     steady, diverging = searched(False, 0.0, 0.3), None
     try:
         steady = in_runs(steady, 0.3, 0.4)
     except UnstableError as error:
         diverging = error
-    if diverging is None and (steady.stopped or _holds(steady, wanted)):
+    if diverging is None and (steady.stopped or _gains(steady)):
         return steady
     try:
         over = in_runs(searched(True, 0.4, 0.9), 0.9, 1.0)
     except InputError as error:
         if diverging is not None:
             raise diverging from None
-        return replace(steady, stopped=isinstance(error, StoppedError))
+        return offered(replace(steady, stopped=isinstance(error, StoppedError)))
     if diverging is None and (over.stopped or _after(over, wanted) >= _after(steady, wanted)):
-        return replace(steady, stopped=over.stopped)
+        return offered(replace(steady, stopped=over.stopped))
     note = Text(
         "the best setting of the steady state is no better in the runs; this is the best over the run"
     )
-    return replace(over, warnings=(note, *over.warnings))
+    return offered(replace(over, warnings=(note, *over.warnings)))
 
 
 def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:
     """Search under the limits of a search and those by default, or without these where nothing keeps them."""
     wanted, limits = search.objective, search.requirements
-    search.requirements = (*limits, *defaults)
     start, before = _begin(search)
+    settings = search.now()
+    missed = bool(settings) and search.excess(settings) > 0.0
+    if any(one.name == "settling_s" for one in defaults):
+        defaults = (*defaults, *heading_limit(settings))
+    search.requirements = (*limits, *defaults)
     if before == 0.0 and all(QUANTITIES[name].kind for name in wanted.names):
         reason = Text("is 0 as it is: the scenario has no error that a setting could make smaller")
         raise InputError(Fault("", "--objective", wanted.text, reason))
@@ -181,7 +194,8 @@ def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:
     found = _result(search, best[1], before, effort, stopped)
     kept = tuple(one.text for one in defaults)
     every = (*limits, *defaults)
-    return replace(found, default_limits=kept, limits=every, warnings=(*left, *found.warnings))
+    warnings = (*left, *found.warnings)
+    return replace(found, default_limits=kept, limits=every, warnings=warnings, repairs=missed)
 
 
 def _confirmed(
@@ -194,17 +208,41 @@ def _confirmed(
 ) -> Tuned:
     """Add what runs say of the proposal."""
     pair = scenario.method[index], found.scenario.method[index]
-    result = confirmed(scenario, *pair, progress=progress, cancelled=cancelled)
+    result = confirmed(scenario, *pair, terms=objective.terms, progress=progress, cancelled=cancelled)
     if result is None:
         return replace(found, stopped=True)
-    verdicts = (result.verdict(name) for name in objective.names)
-    return replace(found, confirmed=result, warnings=(*filter(None, verdicts), *found.warnings))
+    said = dict.fromkeys((*filter(None, map(result.verdict, objective.names)), *result.worse()))
+    return replace(found, confirmed=result, warnings=(*said, *found.warnings))
 
 
-def _holds(found: Tuned, objective: Objective) -> bool:
-    """Whether runs do not speak against every term of the objective."""
+def _offered(found: Tuned, scenario: Scenario, varied: Sequence[Varied]) -> Tuned:
+    """Take a proposal back that is no proven gain: the setting stays as it is.
+
+    A gain is an objective that is smaller in the runs beyond chance, a given limit that is kept and was
+    missed, or, of an objective that runs do not measure, a smaller value.
+    """
+    if found.stopped or found.confirmed is None or found.repairs or _gains(found):
+        return found
+    now = present(scenario, varied)
+    best = {one.field: float(x) for one, x in zip(varied, now, strict=True) if math.isfinite(x)}
+    refused = found.best
+    note = Text("no proposal: none has a proven gain in the runs; the setting stays as it is")
+    objective = found.objective if found.before is None else found.before
+    return replace(
+        found, best=best, refused=refused, objective=objective, scenario=scenario, offered=False,
+        at_end_of_range=(), active=(), cost={}, flat={}, warnings=(note, *found.warnings),
+    )  # fmt: skip
+
+
+def _gains(found: Tuned) -> bool:
+    """Whether the objective is smaller after a proposal: in the runs beyond chance, else by its own value."""
     assert found.confirmed is not None
-    return not all(found.confirmed.verdict(name) for name in objective.names)
+    proven = found.confirmed.gains
+    if proven is None:
+        return found.before is None or found.objective < found.before * (
+            1.0 - math.copysign(_GAIN, found.before)
+        )
+    return proven
 
 
 def _after(found: Tuned, objective: Objective) -> float:
@@ -242,7 +280,7 @@ def _begin(search: Search) -> tuple[np.ndarray | None, float | None]:
     """Place and objective of the present setting; also fixes the scales of the objective."""
     values = present(search.ships[0].scenario, search.varied)
     try:
-        settings = [Setting(ship, ship.scenario.method[search.varied[0].method]) for ship in search.ships]
+        settings = search.now()
         search.reference = search.objective.reference(settings)
         before = search.value(settings)
     except (InputError, np.linalg.LinAlgError):

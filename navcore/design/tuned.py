@@ -54,6 +54,12 @@ class Tuned(Answer):
         The objective's name, or the sum, as it was asked for.
     limits : tuple of Requirement
         That were kept: given, of the scenario, and by default.
+    repairs : bool
+        The present setting misses a limit that was given; the best one keeps it.
+    offered : bool
+        False where runs prove no gain: the setting, its objective and the scenario are then the present ones.
+    refused : dict of float
+        Where it is not offered: the setting that the search had found.
     """
 
     best: dict[str, float]
@@ -73,6 +79,14 @@ class Tuned(Answer):
     confirmed: Confirmed | None = None
     of: str = ""
     limits: tuple[Requirement, ...] = ()
+    repairs: bool = False
+    offered: bool = True
+    refused: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def failed(self) -> bool:
+        """Whether there is no proposal."""
+        return not self.offered
 
     @property
     def so_far(self) -> str:
@@ -91,6 +105,8 @@ class Tuned(Answer):
             "cost": self.cost,
             "flat": {name: list(ends) for name, ends in self.flat.items()},
             "stopped": self.stopped,
+            "offered": self.offered,
+            "refused": self.refused,
             "default_limits": list(self.default_limits),
             "assumed_zero": list(self.assumed_zero),
             "warnings": list(self.warnings),

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.design.confirm import confirmed
+from navcore.analysis.heading_settling import heading_settling
+from navcore.design.confirm import Change, Confirmed, confirmed
+from navcore.design.default_limits import heading_limit
 from navcore.design.measures import Setting
 from navcore.design.ship import Ship
 from navcore.design.tune import tune
@@ -162,3 +164,69 @@ def test_a_range_that_is_not_given_is_the_sliders() -> None:
     assert [own.low, own.high] == slider
     (asked,) = read_varied(ship(), [f"{ETA}=0.01:9"])
     assert (asked.low, asked.high) == (0.01, 9.0)
+
+
+def compassed(sigma: float) -> Scenario:
+    """A ship whose heading is held by a gyrocompass; the slower it is, the less noise it takes."""
+    return ship(
+        run={"duration_h": 12.0, "step_s": 10.0},
+        imu={"gyro_bias_std_dph": 0.005, "accel_bias_std_ug": 20.0, "gyro_arw_dpsh": 0.001},
+        initial_error={"heading_std_arcmin": 10.0},
+        method=[
+            {
+                "damping": "external",
+                "network": {"id": "complementary"},
+                "gyrocompass": {"sigma": sigma, "xi": 0.707},
+            }
+        ],
+    )
+
+
+def test_a_proposal_without_a_proven_gain_is_none() -> None:
+    """Nothing is offered, the command ends with 3, and a proposal with a gain names what it costs."""
+    low = Change(724.7, 726.7, 2.0, -3.0, 7.0)
+    ruined = Change(4.25, 283.0, 278.75, 270.0, 287.0)
+    assert not Confirmed(32, {"position_rms": low}, low).gains
+    assert Confirmed(32, {"position_rms": low}, Change(1.0, 0.9, -0.1, -0.2, -0.01)).gains
+    assert Confirmed(32, {}).gains is None
+    (said,) = Confirmed(32, {"position_rms": low, "heading_rms": ruined}).worse()
+    assert said.startswith("heading_rms is 66.6 times as large after it")
+
+
+def test_the_setting_stays_where_no_gain_is_proven(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The search goes by a covariance that promises a gain; the runs, of the same two settings, show none."""
+    scenario = ship(run={"duration_h": 1.0, "step_s": 5.0})
+    same = confirmed(scenario, scenario.method[0], scenario.method[0], terms=[("velocity_rms", 1.0)])
+    assert same is not None and same.objective is not None and not same.gains
+    monkeypatch.setattr("navcore.design.tune.confirmed", lambda *_, **__: same)
+    found = tune(scenario, "velocity_rms", [f"{ZETA}=0.3:1"], along=True, confirm=True)
+    assert not found.offered and found.failed and found.scenario == scenario
+    assert found.best == {ZETA: 0.5} and found.refused[ZETA] != 0.5
+    assert found.objective == found.before and found.warnings[0].startswith("no proposal")
+    path = tmp_path / "ship.toml"
+    path.write_text(to_toml(scenario))
+    asked = ["tune", str(path), "--along", "--objective", "velocity_rms", "--vary", f"{ZETA}=0.3:1"]
+    assert main([*asked, "--json"]) == 3
+    assert json.loads(capsys.readouterr().out)["offered"] is False
+
+
+def test_the_settling_limit_sees_the_azimuth_loop() -> None:
+    """Twice the heading's settling as it is, four hours at least; none without such a loop."""
+    (quick, slow) = (Setting(Ship(one), one.method[0]) for one in (compassed(0.002), compassed(0.0002)))
+    assert 0.0 < quick.heading_settling_s < slow.heading_settling_s
+    assert heading_limit([quick])[0].limit == max(2.0 * quick.heading_settling_s, 4 * 3600.0)
+    assert heading_limit([quick])[0].excess(slow) > 0.0
+    assert heading_limit([Setting(Ship(ship()), ship().method[0])]) == []
+    assert heading_settling(quick.network, 0.78) == float("inf")
+
+
+@pytest.mark.slow
+def test_tuning_keeps_the_heading_settling() -> None:
+    """The limit is told among those by default, and the setting keeps it."""
+    quick = Setting(Ship(compassed(0.002)), compassed(0.002).method[0])
+    found = tune(compassed(0.002), "position_rms", ["method.0.gyrocompass.sigma"], along=True)
+    assert any(text.startswith("heading_settling_s<=") for text in found.default_limits)
+    now = Setting(Ship(found.scenario), found.scenario.method[0]).heading_settling_s
+    assert now <= heading_limit([quick])[0].limit

@@ -117,7 +117,7 @@ class SettingPanel:
             (self._objective, chosen),
             (self._vary, chosen),
             (self._keep, chosen),
-            (self._accept, chosen and offered),
+            (self._accept, chosen and offered and result is not None and result.offered),
             (self._discard, chosen and offered),
             (self._undo, chosen and accepted),
         )
