@@ -40,7 +40,7 @@ def test_an_answer_is_there_when_the_page_is_back(dashboard: tuple[int, Dashboar
     visitor = opened(port, id)
     session = served.sessions.get(id)
     session.show(None, study_seeds=2)
-    studier = session.searches.studier
+    studier = session.searches.asking["study"]
     visitor.ask("study")
     eventually(lambda: studier.under_way is not None)
     visitor.__exit__(None, None, None)

@@ -282,6 +282,7 @@ def test_rows_of_a_truth_are_those_asked_for_and_the_last_answer_is_kept() -> No
     assert np.array_equal(truth.at(np.array([0, 2])), first)
     with pytest.raises(ValueError, match="read-only"):
         first[0, 0] = 1.0
-    assert truth.mean_velocity == (truth.values[:, VE].mean(), truth.values[:, VN].mean())
+    (whole,) = truth.stretches  # short: one stretch
+    assert whole == pytest.approx((*truth.values[:, [LAT, VE, VN]].mean(axis=0), 2.0))
     still = Truth(0.5, truth.values[:1])
     assert np.array_equal(still.at(np.arange(3)), np.repeat(truth.values[:1], 3, axis=0))

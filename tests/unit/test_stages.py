@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.foundation.stage_cache import _size
+from navcore.foundation.stage_cache import bytes_of
 from tools import stages
 from tools.stages import BESIDE, CHECKS, CODE, STAGES, Count, closing_line, read_counts, run_beside
 
@@ -135,6 +135,6 @@ class Held:
 
 def test_the_cache_counts_arrays_wherever_they_lie() -> None:
     rows = np.zeros(1000)
-    assert _size(Held((rows, {"more": [rows]}))) == 1024 + 16_000
-    assert _size(Held(Held(rows))) == 1024 + 8_000
-    assert _size(Held("text")) == 1024
+    assert bytes_of(Held((rows, {"more": [rows]}))) == 1024 + 16_000
+    assert bytes_of(Held(Held(rows))) == 1024 + 8_000
+    assert bytes_of(Held("text")) == 1024
