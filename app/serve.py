@@ -19,6 +19,7 @@ from schuler_bench.languages import LANGUAGE_SCRIPTS
 from schuler_bench.logs import begin_logging
 from schuler_bench.memory import GiveBack, bound_arenas, collect_seldom
 from schuler_bench.session.keeping import NO_HOME, Keeping, NotKept
+from schuler_bench.session.saving import AGAIN_AFTER_S
 from schuler_bench.views import VIEWS, load, scripts
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ class Dashboard:
         self._memory = GiveBack(self._forget)
         self._pages: dict[int, Page] = {}
         self._lock = threading.Lock()
+        self._ended = threading.Event()
 
     @cached_property
     def sessions(self) -> Sessions:
@@ -117,6 +119,26 @@ class Dashboard:
         from schuler_bench.session.store import open_store
 
         return None if self._state is None else open_store(self._state, self.keeping)
+
+    def _open_later(self) -> None:
+        """Try again, until it works or the server ends, to keep what could not be kept at the start."""
+        from schuler_bench.session.store import open_store
+
+        assert self._state is not None
+        while not self._ended.wait(AGAIN_AFTER_S):
+            store = open_store(self._state, self.keeping)
+            if store is None:
+                continue
+            with self._lock:
+                self.__dict__["store"] = store
+                sessions = self.__dict__.get("sessions")
+            if self._ended.is_set():
+                store.close()
+                return
+            if sessions is not None:
+                sessions.keep_in(store)
+            self.keeping.becomes(None)
+            return
 
     @cached_property
     def metrics(self) -> Metrics:
@@ -165,7 +187,9 @@ class Dashboard:
     ) -> None:
         try:
             with self._lock:
-                _ = self.store  # the first thing that is said: whether anything is kept
+                kept = self.store  # the first thing that is said: whether anything is kept
+            if kept is None and self._state is not None:
+                threading.Thread(target=self._open_later, name="store-later", daemon=True).start()
             compile_kernels()
             prepare()
             import schuler_bench.shell.page  # noqa: F401
@@ -216,6 +240,7 @@ class Dashboard:
 
     def close(self) -> None:
         """End all sessions and remove what was uploaded and is not kept."""
+        self._ended.set()
         helper.stop()
         kernels.stop()
         if "sessions" in self.__dict__:  # made with the first page

@@ -41,10 +41,13 @@ class Aside:
         By which it is found.
     why : str
         What is wrong with it.
+    left : bool
+        Something of it is left, and not only that there was one.
     """
 
     number: int
     why: str
+    left: bool
 
 
 class Database:
@@ -145,8 +148,9 @@ class Database:
 
     def asides(self, id: str) -> list[Aside]:
         """What was put aside of a session, the newest first."""
-        query = "SELECT number, why FROM aside WHERE id = ? ORDER BY number DESC"
-        return [Aside(*row) for row in self._do(lambda one: one.execute(query, (id,)).fetchall())]
+        query = "SELECT number, why, content IS NOT NULL FROM aside WHERE id = ? ORDER BY number DESC"
+        rows = self._do(lambda one: one.execute(query, (id,)).fetchall())
+        return [Aside(number, why, bool(left)) for number, why, left in rows]
 
     def aside(self, id: str, number: int) -> bytes | None:
         """Content of a document that was put aside, as it was."""

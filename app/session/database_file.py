@@ -9,7 +9,7 @@ from pathlib import Path
 
 from schuler_bench.http.ids import log_name
 from schuler_bench.session import salvage, served
-from schuler_bench.session.folder import Folder, temporary_name
+from schuler_bench.session.folder import OF_A_SESSION, Folder, temporary_name
 from schuler_bench.session.salvage import NAME, PAGE_BYTES
 
 _ENDINGS = ("-wal", "-shm", "-journal")
@@ -219,24 +219,29 @@ def begin_anew(folder: Folder, path: Path, error: DamagedError) -> sqlite3.Conne
     finally:
         for ending in ("", *_ENDINGS):
             folder.discard(fresh + ending)
-    whole = sum(one.whole for one in found)
+    whole, nothing = sum(one.whole for one in found), sum(not one.content for one in found)
     _log.warning(
-        "%s is put aside as %s (%s); %d documents of it are taken over, %d are in part only",
+        "%s is put aside as %s (%s); %d documents of it are taken over, %d are in part only, %d are lost",
         NAME,
         aside,
         error.strerror,
         whole,
-        len(found) - whole,
+        len(found) - whole - nothing,
+        nothing,
     )
     return _connect(path)
 
 
 def _readable(folder: Folder) -> list[salvage.Found]:
+    """Documents of the damaged file, and those of which only files beside it tell."""
     try:
-        return salvage.documents(folder)
+        found = salvage.documents(folder)
     except Exception:  # whatever it holds: it is kept, and the work goes on
         _log.exception("no document can be read in the damaged file")
-        return []
+        found = []
+    known = {one.id for one in found}
+    named = {name.rpartition(".")[0] for name in folder.names() if OF_A_SESSION.fullmatch(name)}
+    return found + [salvage.Found(id, None, 0.0, b"", False) for id in sorted(named - known)]
 
 
 def _put(connection: sqlite3.Connection, found: Iterable[salvage.Found]) -> None:
@@ -249,7 +254,7 @@ def _put(connection: sqlite3.Connection, found: Iterable[salvage.Found]) -> None
         else:
             connection.execute(
                 "INSERT INTO aside (id, why, content, used_served) VALUES (?, 'it is damaged', ?, 0.0)",
-                (one.id, one.content),
+                (one.id, one.content or None),
             )
             _log.warning("the document of session %s is damaged, and put aside", log_name(one.id))
 

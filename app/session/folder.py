@@ -25,7 +25,7 @@ _FILES_OF_STATE = re.compile(
     rf"lock|session\.key|(sessions\.sqlite|{PUT_ASIDE.pattern})(-wal|-shm|-journal)?|{TEMPORARY.pattern}"
 )
 _FOLDERS_OF_STATE = re.compile("|".join(("content", FILES.pattern, STUDY.pattern)))
-_OF_A_SESSION = re.compile(f"{FILES.pattern}|{STUDY.pattern}")
+OF_A_SESSION = re.compile(f"{FILES.pattern}|{STUDY.pattern}")
 _ELSEWHERE = "or set XDG_STATE_HOME to another folder"
 _log = logging.getLogger("schuler.store")
 
@@ -177,7 +177,9 @@ def link_files(source: Path, target: Path) -> None:
     """
     with suppress(FileNotFoundError), opened(source) as own, opened(target, make=True) as other:
         for name, state in own.files(lambda name: not name.startswith(".")).items():
-            fresh = temporary_name()
+            there, fresh = other.file(name), temporary_name()
+            if there is not None and (there.st_size, there.st_mtime_ns) == (state.st_size, state.st_mtime_ns):
+                continue
             try:
                 own.link(name, other, fresh)
             except OSError:  # other file systems, or no links on this one
@@ -273,7 +275,7 @@ def _faults(path: Path, fits: Callable[[int], bool], *, any_owner: bool = False)
     except OSError:
         return []
     # The name of a session's folder opens the session: its beginning is enough to find it.
-    shown = path.with_name(f"{path.stem[:6]}*{path.suffix}") if _OF_A_SESSION.fullmatch(path.name) else path
+    shown = path.with_name(f"{path.stem[:6]}*{path.suffix}") if OF_A_SESSION.fullmatch(path.name) else path
     wanted = "file" if fits is stat.S_ISREG else "folder"
     if stat.S_ISLNK(state.st_mode):
         how = f"is a link, which is not followed: put the {wanted} itself there, {_ELSEWHERE}"

@@ -14,7 +14,10 @@ from schuler_bench.jobs.words import without_folders
 
 _log = logging.getLogger("schuler.store")
 _AGAIN = Text("Saving is tried again by itself.")
-_ELSEWHERE = Text("Make it writable, or set XDG_STATE_HOME to another folder; then start the server again.")
+_ELSEWHERE = Text(
+    "Make it writable, or set XDG_STATE_HOME to another folder and start the server again. {again}",
+    again=_AGAIN,
+)
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,10 @@ NO_HOME = NotKept(
 )
 HELD = NotKept(
     Text("another server uses the same state folder"),
-    Text("End that server, or set XDG_STATE_HOME to another folder; then start this one again."),
+    Text(
+        "End that server, or set XDG_STATE_HOME to another folder and start this one again. {again}",
+        again=_AGAIN,
+    ),
 )
 OF_PROGRAM = NotKept(Text("an error of this program"), Text("The log of the server says more."))
 _REMEDIES = {

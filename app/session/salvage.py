@@ -30,6 +30,10 @@ _HEAD = re.compile(
 )
 """Length of a row's head, then the type of each column: id, shared_by, used_s, content, and used_served."""
 _ID = re.compile(rb"[A-Za-z0-9_-]{1,64}")
+_INDEXED = re.compile(
+    rb"(?P<length>[\x04-\xff])\x03(?P<by>[\x00\x0d-\x7f])(?P<id>[\x0f-\x7f])(?=[A-Za-z0-9_-])"
+)
+"""Begin of an entry of the index of documents: shared_by and id, which tell of rows that are lost."""
 _SIZES = (0, 1, 2, 3, 4, 6, 8, 8, 0, 0, 0, 0)
 
 
@@ -46,7 +50,7 @@ class Found:
     used_s : float
         When it was last used, by the clock of that time; 0: not known.
     content : bytes
-        The document, or what could be read of it.
+        The document, or what could be read of it; empty: nothing but that there was one.
     whole : bool
         The content is a document of this id.
     """
@@ -77,6 +81,8 @@ def documents(folder: Folder) -> list[Found]:
             other = best.get(one.id)
             if other is None or (one.whole, one.used_s) >= (other.whole, other.used_s):
                 best[one.id] = one
+        for id in pages.indexed():
+            best.setdefault(id, Found(id, None, 0.0, b"", False))
     return list(best.values())
 
 
@@ -190,12 +196,25 @@ class _Pages:
 
     def rows(self) -> Iterator[Found]:
         """Every version of every row; those of the log last."""
+        for page in self._all():
+            yield from self._rows_of(page)
+
+    def indexed(self) -> Iterator[str]:
+        """Ids of which the index says that there is a document."""
+        for page in self._all():
+            for entry in _INDEXED.finditer(page):
+                by, id = ((entry[name][0] - 12) // 2 if entry[name] != b"\0" else 0 for name in ("by", "id"))
+                named = page[entry.end() + by : entry.end() + by + id]
+                if entry["length"][0] == 3 + by + id and _ID.fullmatch(named) is not None:
+                    yield named.decode()
+
+    def _all(self) -> Iterator[bytes]:
+        """Every version of every page; those of the log last."""
         for number in range(1, self._count + 1):
-            yield from self._rows_of(os.pread(self._file, self._size, (number - 1) * self._size))
-        starts = sorted(start for starts in self._newer.values() for start in starts)
-        for start in starts:
+            yield os.pread(self._file, self._size, (number - 1) * self._size)
+        for start in sorted(start for starts in self._newer.values() for start in starts):
             assert self._log is not None
-            yield from self._rows_of(os.pread(self._log, self._size, start))
+            yield os.pread(self._log, self._size, start)
 
     def _rows_of(self, page: bytes) -> Iterator[Found]:
         at = 0

@@ -9,6 +9,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from weakref import WeakSet
 
 from navcore.engine.run import Run
 from navcore.foundation.stage_cache import bytes_of
@@ -44,6 +45,16 @@ NOT_READ = NotKept(
     Text("the kept session cannot be read at present"),
     Text("What is kept stays as it is. Close this page and open the address again later."),
 )
+LOST = Text("What was kept of this session is lost: the database of the server was damaged. It begins anew.")
+LOST_IN_PART = Text(
+    "Only a part of what was kept of this session is left: the database of the server was damaged. It begins "
+    "anew."
+)
+EARLIER = Text("it was kept before, when nothing could be read here")
+EARLIER_TOLD = Text(
+    "This session was kept earlier, which this server could not read when it started. What was kept then is "
+    "put aside, untouched; what is shown here is kept from now on."
+)
 _ANEW = Text("It begins anew; what was kept is put aside, untouched.")
 _log = logging.getLogger("schuler.sessions")
 
@@ -77,6 +88,7 @@ class Sessions:
         self._opening: dict[str, threading.Lock] = {}
         self._shared: OrderedDict[str, Document] = OrderedDict()
         self._folder: Path | None = None
+        self._without_store = WeakSet[Session]()
         self.prepared: Run | None = None
         """Run of the scenario that a new visitor sees; its first picture need not wait for it."""
         atexit.register(self.close)
@@ -99,7 +111,10 @@ class Sessions:
                 self._by_id[id] = opened
                 self._by_id.move_to_end(id)
                 self._trim(keep=opened)
-                return opened
+                late = self._store is not None and opened in self._without_store
+            if late:  # the store came while it was made
+                self._keep_late(opened)
+            return opened
 
     def knows(self, id: str) -> bool:
         """Whether there is a session with that id already, held or kept."""
@@ -152,7 +167,9 @@ class Sessions:
             _log.warning("session %s cannot be read at present: %s", log_name(id), error.strerror or error)
             session.keeping.becomes(NOT_READ)
             session.on_change = lambda: None  # it would be written over
-        if self._store is not None:
+        if self._store is None:
+            self._without_store.add(session)
+        else:
             session.uploads.has_room = self._store.has_room
             session.uploads.keep_once = self._store.contents.keep_once
             keep_study(session.searches.asking["study"], self._store.study_folder(id), study_name(session))
@@ -177,7 +194,9 @@ class Sessions:
         try:
             document = self._kept(source)
             if document is None:
-                self._show_aside(session, source)
+                if self._show_aside(session, source):
+                    offered = session.keeping.aside
+                    session.keeping.unreadable = LOST_IN_PART if offered else LOST
                 return False
             if source != session.id:
                 link_files(self._files_folder(source), session.uploads.folder)
@@ -204,20 +223,74 @@ class Sessions:
             "This session could not be opened as it was kept: {why}. {told}", why=why, told=told
         )
 
-    def _show_aside(self, session: Session, source: str) -> None:
-        """Offer what was put aside of a session to its page."""
-        if self._store is not None:
-            database = self._store.database
-            session.keeping.aside += tuple(
-                SetAside(f"session-{one.number}.json", one.why, partial(database.aside, source, one.number))
-                for one in database.asides(source)
-            )
+    def _show_aside(self, session: Session, source: str) -> bool:
+        """Offer what was put aside of a session to its page; whether there is anything, if only its loss."""
+        if self._store is None:
+            return False
+        database = self._store.database
+        asides = database.asides(source)
+        session.keeping.aside += tuple(
+            SetAside(f"session-{one.number}.json", one.why, partial(database.aside, source, one.number))
+            for one in asides
+            if one.left
+        )
+        return bool(asides)
 
     # ------------------------------------------------------------ keeping
 
     def _changed(self, session: Session) -> None:
         if self._store is not None:
-            self._store.saving.soon(session.id, partial(to_document, session), session.keeping.becomes)
+            self._store.saving.soon(session.id, partial(self._document, session), session.keeping.becomes)
+
+    def _document(self, session: Session, *, whole: bool = True) -> Document:
+        """Document of a session whose files lie where they are kept."""
+        kept = self._files_folder(session.id)
+        if session.uploads.folder != kept:  # it began before there was a store
+            link_files(session.uploads.folder, kept)
+        return to_document(session, whole=whole)
+
+    def keep_in(self, store: Store) -> None:
+        """Keep in a store, which was not to be had at the start, all that is held, from now on."""
+        with self._lock:
+            self._store = store
+            held, shared = list(self._by_id.values()), dict(self._shared)
+        for id, document in shared.items():
+            try:
+                if self._folder is not None:
+                    link_files(self._folder / id, store.files_folder(id))
+                store.write(id, document, shared_by="")
+            except OSError as error:
+                _log.warning("a shared state cannot be kept: %s", error.strerror or error)
+        for session in held:
+            if session in self._without_store:
+                self._keep_late(session)
+
+    def _keep_late(self, session: Session) -> None:
+        """Keep a session that began without a store; what the store has of it already is put aside."""
+        store = self._store
+        assert store is not None
+        self._without_store.discard(session)
+        if not session.open_pages and len(session.history.steps) == 1 and not session.uploads.files:
+            with self._lock:  # nothing was done in it: it is opened anew, as it was kept
+                if self._by_id.get(session.id) is session:
+                    del self._by_id[session.id]
+            session.close()
+            return
+        try:
+            if store.has(session.id):
+                store.database.put_aside(session.id, str(EARLIER))
+                session.keeping.unreadable = EARLIER_TOLD
+                self._show_aside(session, session.id)
+        except OSError as error:
+            _log.warning("session %s cannot be kept: %s", log_name(session.id), error.strerror or error)
+            session.keeping.becomes(NOT_READ)
+            session.on_change = lambda: None  # what is there would be written over
+            return
+        session.uploads.has_room = store.has_room
+        if not store.study_folder(session.id).is_dir():
+            keep_study(session.searches.asking["study"], store.study_folder(session.id), study_name(session))
+        self._changed(session)
+        session.keeping.tell()
 
     def _tell_kept(self, _: NotKept | None) -> None:
         with self._lock:
@@ -227,7 +300,7 @@ class Sessions:
 
     def _share(self, session: Session) -> str:
         id = new_shared_id()
-        document = to_document(session, whole=False) | {"id": id}
+        document = self._document(session, whole=False) | {"id": id}
         if self._store is not None:
             self._store.share(session.id, id, document)
             return id

@@ -110,7 +110,8 @@ def open_store(folder: Path, keeping: Keeping | None = None) -> Store | None:
     except HeldError:
         keeping.becomes(HELD)
     except OSError as error:
-        _log.warning("%s cannot be used: %s", folder, error.strerror or error)
+        if keeping.fault is None:  # not at every further try
+            _log.warning("%s cannot be used: %s", folder, error.strerror or error)
         keeping.becomes(not_kept(error))
     return None
 

@@ -49,7 +49,9 @@ class KeepingPanel:
                 word=_WORD,
             )
         if self._keeping.unreadable:
-            lines += [self._keeping.unreadable, Text("The tab Files offers it for download.")]
+            lines.append(self._keeping.unreadable)
+            if self._keeping.aside:
+                lines.append(Text("The tab Files offers it for download."))
         self._word.content = word
         self._note.content = notices.note(lines, "warning")
         self._note.visible = bool(lines)

@@ -94,6 +94,74 @@ def test_page_and_health_say_why_nothing_is_kept(
     assert str(tmp_path) not in shown + str(told)
 
 
+def test_work_is_kept_once_the_other_server_has_ended(
+    serving: Callable[[], tuple[int, Dashboard]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was known at the start was never tried again; and what the other server had kept must stay."""
+    monkeypatch.setattr("schuler_bench.serve.AGAIN_AFTER_S", 0.2)
+    other = open_store(tmp_path / "state")
+    assert other is not None
+    ids = SessionIds(session_key(tmp_path / "state"))
+    new, old = ids.new(), ids.new()
+    other.write(old, {"id": old, "work": "of before"})
+    port, dashboard = serving()
+    eventually(lambda: health(port)["status"] == "nothing is kept", 30.0)
+    with visit(port, new) as page, visit(port, old) as again:
+        for one in (page, again):
+            one.set(one.control(PAGE_STATE), "1366x768|Method|Errors")
+            one.wait_for(lambda m: 'data-run="1"' in str(m), 60.0)
+            one.set(one.control(ZETA), 0.6)
+            one.wait_for(lambda m: 'data-run="2"' in str(m), 60.0)
+        other.close()
+        eventually(lambda: health(port)["status"] == "ok", 30.0)
+        again.wait_for(lambda m: "This session was kept earlier" in str(m), 30.0)
+        kept = dashboard.store
+        assert kept is not None and kept.saving.flush(20.0)
+        for id in (new, old):
+            written = kept.read(id)
+            assert written is not None and "0.6" in str(written["scenarios"])
+        (aside,) = kept.database.asides(old)
+        assert json.loads(kept.database.aside(old, aside.number) or b"")["work"] == "of before"
+        assert not kept.database.asides(new)
+
+
+NO_HOME = """
+import os, pwd, sys
+def nobody(_):
+    raise KeyError("no such user")
+pwd.getpwuid = nobody
+for name in ("HOME", "XDG_STATE_HOME"):
+    os.environ.pop(name, None)
+from schuler_bench.cli import main
+sys.exit(main(["serve", "--port", "0"]))
+"""
+
+
+def test_without_a_home_terminal_health_and_page_say_that_nothing_is_kept() -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", NO_HOME],
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    ) as server:
+        assert server.stdout is not None
+        threading.Timer(120.0, server.kill).start()
+        try:
+            lines = iter(server.stdout)
+            port = int(next(line for line in lines if "http://" in line).split("/")[2].partition(":")[2])
+            said = next(line for line in lines if "kept" in line)
+            assert "nothing is kept: the user of the server has no home folder. Set XDG_STATE_HOME" in said
+            told = health(port)
+            assert told["status"] == "nothing is kept" and "no home folder" in told["reason"]
+            with visit(port, ask(port, "/").headers["Location"].split("/")[1]) as page:
+                page.set(page.control(PAGE_STATE), "1366x768|Method|Errors")
+                page.wait_for(lambda m: 'data-run="1"' in str(m), 60.0)
+                assert "The user of the server has no home folder" in str(page.received)
+        finally:
+            server.terminate()
+
+
 def test_the_terminal_says_it_at_the_start(tmp_path: Path) -> None:
     folder = tmp_path / "schuler-bench" / "sessions"
     store = open_store(folder)

@@ -158,6 +158,21 @@ def test_each_byte_of_the_head_may_be_wrong(
         assert {id: database.read(id) for id in documents} == documents
 
 
+def test_every_document_that_is_lost_is_named(kept: tuple[Path, Path, Documents], tmp_path: Path) -> None:
+    """A visitor whose row lay in a damaged page began anew without a word."""
+    stopped, _, documents = kept
+    content, lost = (stopped / NAME).read_bytes(), set[str]()
+    for number in range(len(content) // PAGE):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        (folder / NAME).write_bytes(content[: number * PAGE] + bytes(PAGE) + content[(number + 1) * PAGE :])
+        with closing(Database(folder)) as database:
+            missing = {id for id in documents if database.read(id) is None}
+            assert {id for id in documents if database.asides(id)} == missing, number
+            lost |= {id for id in missing if not any(one.left for one in database.asides(id))}
+    assert lost
+
+
 def test_the_damaged_file_stays_beside_as_it_was(kept: tuple[Path, Path, Documents], tmp_path: Path) -> None:
     folder = tmp_path / "state"
     shutil.copytree(kept[0], folder)

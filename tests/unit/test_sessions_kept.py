@@ -213,6 +213,73 @@ def test_what_is_no_document_stays_as_it_was(
     assert xi_of(again) == 0.4 and [one.content() for one in again.keeping.aside] == [content]
 
 
+def test_who_lost_a_session_with_a_damaged_page_is_told(
+    started: Callable[[], Sessions], tmp_path: Path
+) -> None:
+    running = started()
+    worked_on(running)
+    started()
+    file = next(tmp_path.rglob("sessions.sqlite"))
+    pages = bytearray(file.read_bytes())
+    for at in range(4096, len(pages), 4096):  # all but the head and the index
+        if b'"schema"' in pages[at : at + 4096]:
+            pages[at : at + 4096] = bytes(4096)
+    file.write_bytes(pages)
+    session = started().get(ID)
+    assert "is lost: the database of the server was damaged" in session.keeping.unreadable
+    assert not session.keeping.aside and session.scenario == PRESET
+    assert not started().get(SessionIds().new()).keeping.unreadable
+
+
+def test_what_began_without_a_store_is_kept_once_there_is_one(
+    started: Callable[[], Sessions], tmp_path: Path
+) -> None:
+    sessions = Sessions(lambda: (PRESET, "zha-fast"))
+    session = worked_on(sessions)
+    session.uploads.add("log.csv", LOG)
+    link = session.share()
+    sessions.get("looked-at-alone-000000000")
+    store = open_store(tmp_path / "sessions")
+    assert store is not None
+    sessions.keep_in(store)
+    session.uploads.add("later.csv", LOG)
+    set_xi(session, 0.7)
+    second = session.share()
+    sessions.close()
+    again = started()
+    found = again.get(ID)
+    assert xi_of(found) == 0.7 and {*found.uploads.files} == {"log.csv", "later.csv"}
+    assert not found.keeping.aside and not again.knows("looked-at-alone-000000000")
+    for id, xi, names in ((link, 0.5, {"log.csv"}), (second, 0.7, {"log.csv", "later.csv"})):
+        copy = again.get(SessionIds().new_copy(id))
+        assert (xi_of(copy), {*copy.uploads.files}) == (xi, names)
+        assert not copy.keeping.unreadable
+
+
+def test_what_was_kept_before_is_not_written_over_by_who_could_not_read_it(
+    started: Callable[[], Sessions], tmp_path: Path
+) -> None:
+    worked_on(started())
+    started().close()
+    sessions = Sessions(lambda: (PRESET, "zha-fast"))
+    untouched = sessions.get(ID)
+    store = open_store(tmp_path / "sessions")
+    assert store is not None
+    sessions.keep_in(store)
+    assert sessions.get(ID) is not untouched and xi_of(sessions.get(ID)) == 0.5
+    sessions.close()
+    sessions = Sessions(lambda: (PRESET, "zha-fast"))
+    set_xi(sessions.get(ID), 0.9)
+    store = open_store(tmp_path / "sessions")
+    assert store is not None
+    sessions.keep_in(store)
+    assert "kept earlier" in sessions.get(ID).keeping.unreadable
+    (aside,) = sessions.get(ID).keeping.aside
+    assert b"0.6" in (aside.content() or b"")
+    sessions.close()
+    assert xi_of(started().get(ID)) == 0.9
+
+
 def test_what_cannot_be_read_at_present_is_not_written_over(
     started: Callable[[], Sessions], monkeypatch: pytest.MonkeyPatch
 ) -> None:
