@@ -56,6 +56,14 @@ def collect_seldom() -> None:
     gc.set_threshold(*_THRESHOLDS)
 
 
+def give_back() -> None:
+    """Give freed memory back to the system."""
+    gc.collect()
+    libc = _glibc()
+    if libc is not None:
+        libc.malloc_trim(0)
+
+
 class GiveBack:
     """Gives freed memory back to the system, some time after it was asked to; asked often, once.
 
@@ -85,7 +93,4 @@ class GiveBack:
         with self._lock:
             self._timer = None
         self._forget()
-        gc.collect()
-        libc = _glibc()
-        if libc is not None:
-            libc.malloc_trim(0)
+        give_back()

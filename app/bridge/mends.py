@@ -8,7 +8,7 @@ import asyncio
 import dataclasses
 import logging
 import os
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache, partial
 from types import SimpleNamespace
@@ -205,6 +205,12 @@ def share_threads_fairly(server: viser.ViserServer) -> None:
 def pool_of(server: viser.ViserServer) -> object:
     """Threads that carry out the visitors' callbacks: a `FairPool`, if viser is mended."""
     return getattr(server, "_thread_executor", None)
+
+
+def work_for(server: viser.ViserServer, client_id: int, owner: Hashable) -> None:
+    """Let what a visitor's callbacks put into the cache of stages belong to an owner."""
+    if isinstance(pool := pool_of(server), FairPool):
+        pool.work_for(client_id, owner)
 
 
 def forget_callbacks(server: viser.ViserServer, client_id: int) -> None:

@@ -2,12 +2,13 @@
 
 import threading
 from collections import OrderedDict, deque
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any
 
 from navcore.foundation.kernel_wait import waiting
+from navcore.foundation.stage_cache import working_for
 
 MOST_WAITING = 64
 """Callbacks of one visitor that may wait; a person never has so many, and a flood of them is cut off here."""
@@ -50,6 +51,7 @@ class FairPool(Executor):
         self._changed = threading.Condition()
         self._waiting: OrderedDict[object, deque[_Job]] = OrderedDict()
         self._running: set[object] = set()
+        self._owners: dict[object, Hashable] = {}
         self._idle = 0
         self._most_threads, self._threads = threads, 0
         self._closed = False
@@ -74,10 +76,16 @@ class FairPool(Executor):
             self._changed.notify()
             return job.future
 
+    def work_for(self, key: object, owner: Hashable) -> None:
+        """Let what a visitor's callbacks put into the cache of stages belong to an owner, and go with it."""
+        with self._changed:
+            self._owners[key] = owner
+
     def forget(self, key: object) -> None:
         """Drop what still waits of a visitor who has gone."""
         with self._changed:
             self._waiting.pop(key, None)
+            self._owners.pop(key, None)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Begin nothing more; what runs is not waited for."""
@@ -105,8 +113,10 @@ class FairPool(Executor):
                     return
                 key, job = entry
                 self._running.add(key)
+                owner = self._owners.get(key)
             try:
-                _run(job)
+                with working_for(owner):
+                    _run(job)
             finally:
                 with self._changed:
                     self._running.discard(key)

@@ -16,15 +16,16 @@ import viser
 import websockets.asyncio.server
 
 from navcore.foundation.kernel_wait import waiting
+from navcore.foundation.stage_cache import working_for
 from navcore.foundation.text import Text
 from schuler_bench.bridge import server as bridge
 from schuler_bench.bridge.controls import Guest
-from schuler_bench.bridge.mends import forget_callbacks, pool_of
+from schuler_bench.bridge.mends import forget_callbacks, pool_of, work_for
 from schuler_bench.bridge.texts import speak
 from schuler_bench.http.access import Access, RequestHeaders, Throttle, cookies
 from schuler_bench.http.connection import Connection
 from schuler_bench.http.frames import Gate, Uploading
-from schuler_bench.http.ids import SessionIds
+from schuler_bench.http.ids import SessionIds, log_name
 from schuler_bench.http.limits import Limits
 from schuler_bench.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from schuler_bench.http.places import Door, Places
@@ -146,6 +147,7 @@ class Running:
 
         def opened(client_id: int, connection: Connection) -> None:
             sessions[client_id] = connection.session_id
+            work_for(server, client_id, log_name(connection.session_id))
             connection.gate = gates[client_id] = uploading.gate(Guest(server, client_id))
             if connection.request is not None:
                 speak(server, client_id, wording(language_of(connection.request.headers)))
@@ -176,7 +178,7 @@ class Running:
 
 def _call(callback: SessionCallback, client: viser.ClientHandle, session_id: str) -> None:
     try:
-        with waiting():
+        with waiting(), working_for(log_name(session_id)):
             callback(client, session_id)
     except Exception as error:
         _log.exception("a session callback failed")

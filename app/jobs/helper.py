@@ -25,13 +25,14 @@ from navcore.foundation.progress import part_of
 from navcore.foundation.stage_cache import keep_only, working_for
 from navcore.foundation.text import Text
 from schuler_bench.jobs.remote import Compute, Outcome
+from schuler_bench.memory import give_back
 
 _ASK_S, _REPORT_S = 0.05, 0.1
 """Between two questions whether to go on, and between two reports of progress."""
 _LOOK_S, _END_S = 0.25, 3.0
 """Polling interval of a quiet helper, and kill timeout of one that is to end a cancelled job."""
 _IDLE_S = 300.0
-"""A helper that was idle for so long ends, and gives its memory back."""
+"""A helper that was idle for so long ends; the memory of its last job was given back before."""
 _NICE = 10
 _log = logging.getLogger("schuler.helper")
 
@@ -203,6 +204,7 @@ def _help(pipe: Connection) -> None:
             del function, item, outcome
             if last:
                 keep_only(frozenset())
+                give_back()
 
 
 def _outcome(function: Compute, item: Any, pipe: Connection) -> Outcome:

@@ -4,6 +4,7 @@ import threading
 
 import pytest
 
+from navcore.foundation import stage_cache
 from schuler_bench.bridge.pool import MOST_WAITING, FairPool
 
 
@@ -108,3 +109,21 @@ def test_a_failure_is_in_the_future_and_the_thread_lives_on(pool: FairPool) -> N
 
     assert isinstance(pool.submit(fail, "a").exception(5.0), ValueError)
     assert pool.submit(lambda _: 3, "a").result(5.0) == 3
+
+
+def test_what_a_visitor_s_callbacks_keep_belongs_to_them_and_goes_with_them(
+    pool: FairPool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A recording that an upload read stayed for good: it belonged to nobody."""
+    monkeypatch.setattr(stage_cache, "_cache", cache := stage_cache.SharedCache(1 << 20))
+    pool.work_for("a", "session")
+    for visitor in ("a", "b"):
+        pool.submit(lambda key: stage_cache.kept(key, lambda: key), visitor).result(5.0)
+    stage_cache.keep_only({"session"})
+    assert cache.get("a") is not None
+    stage_cache.keep_only(frozenset())
+    assert (cache.get("a"), cache.get("b") is not None) == (None, True)
+    pool.forget("a")
+    pool.submit(lambda key: stage_cache.kept(key, lambda: key), "a").result(5.0)
+    stage_cache.keep_only(frozenset())
+    assert cache.get("a") is not None
