@@ -47,7 +47,7 @@ class Limits:
 
     memory_bytes: int = 1 << 30
     cpu_s: int = 10
-    wall_s: float = 30.0
+    wall_s: float = 120.0
 
 
 @dataclass
