@@ -101,6 +101,13 @@ def law_steps(scenario: Scenario) -> tuple[float, int]:
     return sampling.law_step_s, sampling.samples // sampling.law_every
 
 
+def motion_steps(scenario: Scenario) -> tuple[int, float]:
+    """Number of steps in which the motion is made, and their length (s)."""
+    step_s, steps = law_steps(scenario)
+    truth_step = scenario.run.step_s if not scenario.strapdown else min(scenario.sampling.record_step_s, 1.0)
+    return max(1, math.ceil(steps * step_s / truth_step - 1e-9)), truth_step
+
+
 def course(scenario: Scenario, most: int = MOST_INTERVALS, extra_s: tuple[float, ...] = ()) -> Course:
     """Divide a scenario's run into intervals.
 
@@ -120,8 +127,7 @@ def course(scenario: Scenario, most: int = MOST_INTERVALS, extra_s: tuple[float,
     """
     step_s, steps = law_steps(scenario)
     hold = _hold(scenario, step_s)
-    truth_step = scenario.run.step_s if not scenario.strapdown else min(scenario.sampling.record_step_s, 1.0)
-    count = max(1, math.ceil(steps * step_s / truth_step - 1e-9))
+    count, truth_step = motion_steps(scenario)
     truth = truth_of(scenario, count, truth_step)
     served, still = _served(scenario, truth, step_s, steps)
     edges = _edges(scenario, step_s, steps, hold, most, served + 2 * still, extra_s)

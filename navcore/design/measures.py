@@ -98,7 +98,7 @@ class Setting:
             place = scenario.site.lat_deg * DEG, scenario.earth
             return held_log(acting, *times_s, *place, coupled=False, azimuth=azimuth).growth_per_s
         turned = kind.referenced and log.frame == "body"
-        return growth_under_way(scenario, acting, self.ship.course.truth, times_s, azimuth, turned)
+        return growth_under_way(scenario, acting, self.ship.stretches, times_s, azimuth, turned)
 
     @property
     def _filter(self) -> Loop | None:

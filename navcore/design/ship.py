@@ -5,11 +5,13 @@ from functools import cached_property
 
 from navcore.design.along import Along, along
 from navcore.design.constants import Column, shared_columns
-from navcore.design.course import MOST_INTERVALS, Course, course
+from navcore.design.course import MOST_INTERVALS, Course, course, motion_steps
 from navcore.design.figures import Figures, Series, mean_figures
 from navcore.design.filter import filter_variance
 from navcore.design.floor import steady_floor
 from navcore.design.scheduled import scheduled_times
+from navcore.engine.environment import stretches_of
+from navcore.motion.truth import Stretches
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import StochasticModel, stochastic_model
@@ -47,6 +49,11 @@ class Ship:
         """The motion; raises InputError when it cannot be carried out."""
         times = tuple(time for method in self.scenario.method for time in scheduled_times(method))
         return course(self.scenario, self.intervals, times)
+
+    @cached_property
+    def stretches(self) -> Stretches:
+        """Parts of the motion, without the course; raises InputError when it cannot be carried out."""
+        return stretches_of(self.scenario, *motion_steps(self.scenario))
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:

@@ -4,6 +4,7 @@ Kept by what each stage depends on, so that a slider on a network or policy reco
 a sensor error neither the truth nor its coefficients.
 """
 
+import math
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
@@ -11,12 +12,15 @@ from navcore.engine.notices import input_notices, site_notices
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.mechanization.trajectory import Coefficients, coefficients
-from navcore.motion.truth import Truth
+from navcore.motion.truth import Stretches, Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors_side_by_side
 from navcore.sensors.log import reference_errors_side_by_side
 from navcore.sensors.recorded import recorded_window
+
+_MOST_SHARED, _MOST_AVERAGED = 200_000, 20_000
+"""Rows of a motion that its run has made, a day at half seconds, and of a longer one the rows to average."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,21 @@ def truth_of(scenario: Scenario, steps: int, step_s: float) -> Truth:
             raise error.located("", "motion.") from None
 
     return kept(("truth", _truth_key(scenario, steps, step_s)), make)
+
+
+def stretches_of(scenario: Scenario, steps: int, step_s: float) -> Stretches:
+    """Parts of the motion (`Truth.stretches`), for the verdict on its stability.
+
+    Their means need no row at each half step: of a long run so many would take gigabytes.
+
+    Raises
+    ------
+    InputError
+        As `truth_of`.
+    """
+    rows = 2 * steps + 1
+    every = 1 if rows <= _MOST_SHARED else math.ceil(rows / _MOST_AVERAGED)
+    return truth_of(scenario, max(1, steps // every), every * step_s).stretches
 
 
 def coefficients_of(scenario: Scenario, steps: int, step_s: float) -> Coefficients:

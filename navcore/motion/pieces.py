@@ -35,7 +35,9 @@ PIECE_COLUMNS = 25
 
 
 def shared_pieces(
-    splines: dict[int, tuple[np.ndarray, np.ndarray]], constants: dict[int, float]
+    splines: dict[int, tuple[np.ndarray, np.ndarray]],
+    constants: dict[int, float],
+    times_s: np.ndarray | None = None,
 ) -> np.ndarray:
     """Expand splines on the union of their breakpoints.
 
@@ -46,6 +48,8 @@ def shared_pieces(
         (scipy's layout).
     constants : dict
         First column of a quantity that does not change -> its value.
+    times_s : ndarray, shape (k,), optional
+        Only the pieces in which one of these times lies: few rows of a long recording need few. Default: all.
 
     Returns
     -------
@@ -53,6 +57,8 @@ def shared_pieces(
         The first piece also serves earlier times, the last one later times.
     """
     starts = np.unique(np.concatenate([breaks[:-1] for breaks, _ in splines.values()]))
+    if times_s is not None and times_s.size < starts.size:
+        starts = starts[np.unique(np.maximum(np.searchsorted(starts, times_s, side="right") - 1, 0))]
     pieces = np.zeros((starts.size, PIECE_COLUMNS))
     pieces[:, START] = starts
     for column, (breaks, coefficients) in splines.items():

@@ -165,17 +165,23 @@ class TrackMotion(MotionParameters):
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> np.ndarray:
         """Rows of truth at 0, step_s, ...; shape (count, 15)."""
-        self._covering((count - 1) * step_s, start_utc)
-        return sample(self.kinematics(0.0, site, earth, start_utc), count, step_s, earth)
+        del site
+        track = self._covering((count - 1) * step_s, start_utc)
+        return sample(self._kinematics(track, start_utc, np.arange(count) * step_s), count, step_s, earth)
 
     def kinematics(
         self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> Kinematics:
         """Return the pieces of the splines; an IMU's few samples beyond the record prolong the last one."""
         del site, earth, end_s
-        track, rest = self._smoothed(), np.zeros(COLUMNS)
+        return self._kinematics(self._smoothed(), start_utc)
+
+    def _kinematics(
+        self, track: _Smoothed, start_utc: float | None, times_s: np.ndarray | None = None
+    ) -> Kinematics:
+        rest = np.zeros(COLUMNS)
         rest[HEIGHT] = track.path.height
-        return Kinematics(PIECES, rest, legs=self._pieces(track, start_utc))
+        return Kinematics(PIECES, rest, legs=self._pieces(track, start_utc, times_s))
 
     def _covering(self, span_s: float, start_utc: float | None) -> _Smoothed:
         track = self._smoothed()
@@ -184,8 +190,8 @@ class TrackMotion(MotionParameters):
         require_no_gap(self.streams().series(), start, span_s, MOST_BRIDGED, self.file)
         return track
 
-    def _pieces(self, track: _Smoothed, start_utc: float | None) -> np.ndarray:
-        """All splines on shared pieces; t = 0 at ``start_utc``, else at the start of the own window."""
+    def _pieces(self, track: _Smoothed, start_utc: float | None, times_s: np.ndarray | None) -> np.ndarray:
+        """Shared pieces of all splines; t = 0 at ``start_utc``, else at the start of the own window."""
         start = track.window.start_s if start_utc is None else start_utc
         lat, lon = track.path.columns(start)
         splines = {PIECE_LAT: lat, PIECE_LON: lon, PIECE_HEADING: track.heading.column(0, start)}
@@ -195,7 +201,7 @@ class TrackMotion(MotionParameters):
         else:
             splines[PIECE_PITCH] = track.attitude.column(0, start)
             splines[PIECE_ROLL] = track.attitude.column(1, start)
-        return shared_pieces(splines, constants)
+        return shared_pieces(splines, constants, times_s)
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()

@@ -16,6 +16,9 @@ _STRETCHES, _STRETCH_S = 12, 7200.0
 _ALIKE = np.array([2e-3, 0.1, 0.1])
 """Difference of mean latitude (rad) and velocity (m/s) below which two parts are alike."""
 
+Stretches = tuple[tuple[float, float, float, float], ...]
+"""Latitude (rad), east and north velocity (m/s), on average, and duration (s) of parts of a motion."""
+
 
 @dataclass(frozen=True)
 class Site:
@@ -44,7 +47,7 @@ class Truth:
     _last: list[np.ndarray] = field(default_factory=list, init=False, repr=False)
 
     @cached_property
-    def stretches(self) -> tuple[tuple[float, float, float, float], ...]:
+    def stretches(self) -> Stretches:
         """Latitude (rad), east and north velocity (m/s), on average, and duration (s) of parts of the motion.
 
         Parts that follow each other and are alike are one; one for a vehicle at rest or on a straight course.

@@ -10,6 +10,7 @@ import pytest
 from navcore.foundation.earth import SPHERE, WGS84, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
+from navcore.motion.pieces import shared_pieces
 from navcore.motion.smoothing import smoothed_columns
 from navcore.motion.track import TrackMotion
 from navcore.motion.truth import (
@@ -277,3 +278,16 @@ def test_a_million_points_are_smoothed_without_a_loop_over_them():
     finally:
         sys.setprofile(None)
     assert counted[0] < 20000
+
+
+def test_a_few_rows_of_a_long_track_are_those_of_all_and_need_few_pieces(tmp_path, monkeypatch):
+    """The start of a track of 16 MiB, or its mean course, took as many pieces as the track has fixes."""
+    path, laid = circle(tmp_path), []
+    monkeypatch.setattr(
+        "navcore.motion.track.shared_pieces", lambda *given: laid.append(shared_pieces(*given)) or laid[-1]
+    )
+    every = truth_of(path, 2401, 0.5).values
+    few = truth_of(path, 13, 100.0).values
+    np.testing.assert_array_equal(few, every[::200])
+    np.testing.assert_array_equal(truth_of(path, 1, 1.0).values, every[:1])
+    assert [len(pieces) for pieces in laid[1:]] == [13, 1] and len(laid[0]) > 1000

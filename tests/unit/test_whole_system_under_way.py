@@ -14,6 +14,7 @@ from navcore.design.form import law_form
 from navcore.design.maps import INPUTS, LoopModel, call_map, system_matrices
 from navcore.design.measures import Setting
 from navcore.design.ship import Ship
+from navcore.engine import environment as stage_environment
 from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84
@@ -195,3 +196,30 @@ def test_whole_damping_with_a_turned_log_has_the_slow_modes_of_the_design_maps(t
     assert len(slow) == 4
     for mode in slow:
         assert np.abs(rates - mode).min() < 1e-3 * abs(mode)
+
+
+def test_the_growth_along_a_long_motion_needs_neither_its_course_nor_each_of_its_rows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The budget of the page laid the whole motion out for each method: 500 MB on a track of 16 MiB."""
+    leg = {"duration_s": 86400.0, "speed_mps": 7.0, "heading_deg": 270.0}
+    made = Scenario.parse(
+        {
+            "site": {"lat_deg": -45.0},
+            "motion": {"kind": "legs", "leg": [leg]},
+            "reference": {"kind": "log", "frame": "body"},
+            "run": {"duration_h": 24.0},
+            "method": [{"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}],
+        }
+    )
+    exact, rows = Setting(Ship(made), made.method[0]).growth_per_s, []
+    sample = stage_environment.truth_of
+    monkeypatch.setattr(stage_environment, "_MOST_SHARED", 1000)
+    monkeypatch.setattr(stage_environment, "_MOST_AVERAGED", 1000)
+    monkeypatch.setattr(
+        stage_environment, "truth_of", lambda *given: rows.append(found := sample(*given)) or found
+    )
+    ship = Ship(made)
+    assert Setting(ship, made.method[0]).growth_per_s == pytest.approx(exact, rel=1e-3)
+    assert "course" not in vars(ship)
+    assert [len(truth.values) <= 1001 for truth in rows] == [True]

@@ -15,7 +15,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, spans_from
-from navcore.motion.truth import Truth
+from navcore.motion.truth import Stretches, Truth
 from navcore.networks.azimuth_loop import AzimuthChannel
 from navcore.networks.base import LinearNetwork
 from navcore.networks.known import transfer_at
@@ -127,7 +127,8 @@ def stability_of(
         warnings, growth = (*warnings, *sampled.warnings), sampled.growth_per_s
         if coupled:
             at_rest, turned = growth, kind.referenced and log.body_frame
-            growth = growth_under_way(scenario, acting, truth, (period_s, law_step_s), azimuth, turned)
+            timing_s = period_s, law_step_s
+            growth = growth_under_way(scenario, acting, truth.stretches, timing_s, azimuth, turned)
             if growth > max(_MORE * at_rest, _LEAST_GROWTH):
                 warnings += (_under_way(truth, turned, growth),)
     return Stability(loop, whole, warnings, growth)
@@ -136,7 +137,7 @@ def stability_of(
 def growth_under_way(
     scenario: Scenario,
     acting: LinearNetwork,
-    truth: Truth,
+    stretches: Stretches,
     timing_s: tuple[float, float],
     azimuth: AzimuthChannel | None,
     turned: bool,
@@ -149,8 +150,8 @@ def growth_under_way(
         Gives the Earth.
     acting : LinearNetwork
         H(s) as it acts.
-    truth : Truth
-        The motion.
+    stretches : tuple
+        Parts of the motion.
     timing_s : (float, float)
         Time between two epochs of what the law reads, and between two calls of the law, s.
     azimuth : LinearNetwork or AzimuthGains or None
@@ -158,8 +159,8 @@ def growth_under_way(
     turned : bool
         The law reads a log that the computed heading turns.
     """
-    stretches = tuple(Stretch(*one) for one in truth.stretches)
-    return growth_along(acting, *timing_s, stretches, scenario.earth, azimuth, turned)
+    parts = tuple(Stretch(*one) for one in stretches)
+    return growth_along(acting, *timing_s, parts, scenario.earth, azimuth, turned)
 
 
 def _under_way(truth: Truth, turned: bool, growth: float) -> str:
