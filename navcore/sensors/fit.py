@@ -13,6 +13,7 @@ import numpy as np
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.io.series import rate_of
 from navcore.motion.track import TrackMotion
 from navcore.motion.truth import Site, Truth
 from navcore.sensors.log_files import log_recording, log_series
@@ -45,7 +46,7 @@ class LogErrorFit:
     delay_s : float
         Delay that was taken out before the fit, s.
     rate_hz, span_s : float
-        Median rate and length of the record.
+        Rate, as a count over the time without gaps, and length of the record.
     """
 
     bias: np.ndarray
@@ -155,13 +156,14 @@ def fit_log_error(time_s: np.ndarray, error: np.ndarray, delay_s: float = 0.0) -
     """
     if time_s.size < FEWEST_SAMPLES:
         raise _too_short(time_s.size)
-    interval = float(np.median(np.diff(time_s)))
+    rate_hz = rate_of(time_s)
+    interval = 1.0 / rate_hz
     span = float(time_s[-1] - time_s[0])
     bias = error.mean(axis=0)
     lags = np.arange(max(int(LONGEST_LAG_SHARE * time_s.size), 10) + 1)
     covariance = _autocovariance(error - bias, lags.size).mean(axis=1)
     if covariance[0] == 0.0:
-        return LogErrorFit(bias, np.zeros(2), 0.0, 0.0, span, delay_s, 1.0 / interval, span)
+        return LogErrorFit(bias, np.zeros(2), 0.0, 0.0, span, delay_s, rate_hz, span)
     drift_variance, tau = _fit_decay(covariance, lags * interval)
     noise_variance = covariance[0] - drift_variance
     # The mean of a Gauss-Markov process over a span much longer than tau: variance 2 tau / span of its own.
@@ -173,7 +175,7 @@ def fit_log_error(time_s: np.ndarray, error: np.ndarray, delay_s: float = 0.0) -
         drift=float(np.sqrt(drift_variance)),
         drift_tau_s=tau,
         delay_s=delay_s,
-        rate_hz=1.0 / interval,
+        rate_hz=rate_hz,
         span_s=span,
     )
 

@@ -71,6 +71,13 @@ def test_white_noise_alone_has_no_drift():
     assert fit.drift < 0.02
 
 
+def test_stamps_that_jitter_do_not_change_the_rate_of_the_fit():
+    even = np.arange(2000.0)
+    late = 0.05 * (even % 20)  # the logger's loop takes 5 % too long, and catches up
+    fit = fit_log_error(even + late, np.random.default_rng(1).normal(0.0, 0.05, (2000, 2)))
+    assert fit.rate_hz == pytest.approx(1.0, rel=0.001)
+
+
 def test_a_perfect_log_fits_to_nothing():
     fit = fit_log_error(np.arange(100.0), np.zeros((100, 2)))
     assert (fit.noise, fit.drift) == (0.0, 0.0)
