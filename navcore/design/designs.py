@@ -9,7 +9,7 @@ from navcore.design.needed import needed
 from navcore.design.shares import require_limits, shares_of
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
-from navcore.design.tuned_designs import kalman, tuned_methods
+from navcore.design.tuned_designs import held_as_set, kalman, tuned_methods
 from navcore.engine.ensemble import outcomes
 from navcore.engine.load import estimated_seconds
 from navcore.foundation.errors import Fault, InputError, StoppedError
@@ -44,7 +44,8 @@ def designs(
         noise and the constants (`navcore.engine.ensemble.drawn`).
     as_set : bool
         Judge the scenario's methods as they stand; else each network of the catalogue, tuned for the largest
-        share, and a Kalman filter that is told the same standard deviations.
+        share, a Kalman filter that is told the same standard deviations, and the scenario's own methods with
+        an azimuth network or a gyrocompass as they stand.
     progress, cancelled : callable, optional
         Told the fraction done, 0..1; when ``cancelled`` says True, what was completed is judged: what was
         tuned by then, on a few seeds, or all methods on the seeds that were run.
@@ -71,7 +72,7 @@ def designs(
     else:
         tuned, left_out = tuned_methods(scenario, part_of(progress, 0.0, share), cancelled)
         early = cancelled is not None and cancelled()
-        methods = tuple(tuned) if early else (*tuned, *kalman(scenario))
+        methods = tuple(tuned) if early else (*tuned, *held_as_set(scenario), *kalman(scenario))
     if early:
         seeds, cancelled = _few(scenario, methods, seeds), None
     elif not methods:

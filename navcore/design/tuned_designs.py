@@ -77,6 +77,12 @@ def kalman(scenario: Scenario) -> tuple[Method, ...]:
     return (method,) if not [*scenario.model_copy(update={"method": (method,)}).faults()] else ()
 
 
+def held_as_set(scenario: Scenario) -> tuple[Method, ...]:
+    """Give the scenario's own methods with an azimuth network or a gyrocompass, which no search makes."""
+    held = (one for one in scenario.method if one.azimuth.id != "none" or one.gyrocompass is not None)
+    return tuple(held)
+
+
 def default_method(scenario: Scenario, name: str) -> Method:
     """Give a network with its defaults as a method; raises ValueError where a parameter has none."""
     damping = "external" if scenario.reference.kind != "none" else "internal"

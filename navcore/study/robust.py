@@ -13,7 +13,15 @@ from navcore.design.measures import TUNING_INTERVALS
 from navcore.design.shares import Share, require_limits, shares_of, wilson
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
-from navcore.design.tuned_designs import INTERVALS, Spread, default_method, kalman, ratio_at, tuned_methods
+from navcore.design.tuned_designs import (
+    INTERVALS,
+    Spread,
+    default_method,
+    held_as_set,
+    kalman,
+    ratio_at,
+    tuned_methods,
+)
 from navcore.engine.ensemble import outcomes
 from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.errors import Fault, InputError, StoppedError
@@ -202,7 +210,7 @@ def robust_designs(
     if not as_set:
         spread = Spread(tuple(_searched(scenario, points)), quantile)
         found, left = tuned_methods(scenario, part_of(progress, 0.0, share), cancelled, spread)
-        methods, left_out = (*found, *kalman(scenario)), tuple(left)
+        methods, left_out = (*found, *held_as_set(scenario), *kalman(scenario)), tuple(left)
     if not methods:
         raise InputError([Fault("", "method", name, reason) for name, reason in left_out])
     rows: list[tuple[Share, ...]] = []

@@ -223,3 +223,26 @@ def test_drawn_errors_reach_the_run() -> None:
     row = simulate(made).methods[0].rows[0]
     assert row[:3] == pytest.approx(np.array(made.initial_error.attitude_arcmin) * ARCMIN)
     assert row[0] / ARCSEC != 0.0
+
+
+def test_own_whole_damping_is_judged_beside_the_tuned_networks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it stands, with its azimuth network or gyrocompass; a level method of the scenario is not."""
+    level = {"name": "level", "damping": "external", "network": {"id": "complementary"}}
+    own = [
+        level,
+        {**level, "name": "whole", "azimuth": {"id": "unity2"}},
+        {**level, "name": "compassed", "gyrocompass": {}},
+    ]
+    limit = [{"quantity": "velocity_rms_mps", "at_most": 5.0}]
+    scenario = Scenario.parse(
+        {
+            "run": {"duration_h": 0.5, "step_s": 5.0},
+            "reference": {"kind": "log", "noise_mps": 0.1},
+            "method": own,
+            "requirement": limit,
+        }
+    )
+    monkeypatch.setattr("navcore.design.designs.tuned_methods", lambda *_: ([], []))
+    found = {share.method.label(): share.method for share in designs(scenario, 2).methods}
+    assert "level" not in found
+    assert found["whole"] == scenario.method[1] and found["compassed"] == scenario.method[2]
