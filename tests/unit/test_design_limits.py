@@ -167,7 +167,7 @@ def test_over_a_study_the_table_shows_the_worst_point_and_what_it_costs(ship: Sc
         assert f"take-design {place}" in text
         assert f"this scenario {number(100.0 * one.nominal.met, 3)} %, all points " in text
     assert f"the worst of {found.points} points" in html
-    assert f"Price: {number(100.0 * found.price, 3)} %" in html
+    assert f"Cost: {number(100.0 * found.price, 3)} %" in html
 
 
 def test_a_design_takes_the_place_of_the_edited_method_or_stands_behind_a_free_one(ship: Scenario) -> None:
