@@ -57,6 +57,7 @@ setup: $(STAMPS)/kernels
 
 # The server compiles the kernels beside itself: the first picture needs half of them.
 run: $(STAMPS)/project
+	@echo '== starting the server'
 	@$(BIN)/schuler serve --open $(if $(findstring command,$(origin PORT)),--port $(PORT))
 
 # SLOW=yes: the tests that are marked slow too, as before a merge.

@@ -262,18 +262,27 @@ def names_files(scenario: Scenario) -> bool:
 
 
 def scenario_hash(scenario: Scenario) -> str:
-    """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder."""
+    """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder.
+
+    Raises
+    ------
+    InputError
+        A file that it names cannot be read.
+    """
     data = scenario.canonical()
     for block, field in FILE_FIELDS:
         if data.get(block, {}).get(field):
-            data[block][field] = _fingerprints(data[block][field])
+            data[block][field] = _fingerprints(data[block][field], f"{block}.{field}")
     return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-def _fingerprints(files: str | list[str]) -> list[str]:
-    return [_fingerprint(Path(file)) for file in ([files] if isinstance(files, str) else files)]
+def _fingerprints(files: str | list[str], field: str) -> list[str]:
+    return [_fingerprint(Path(file), field) for file in ([files] if isinstance(files, str) else files)]
 
 
-def _fingerprint(path: Path) -> str:
+def _fingerprint(path: Path, field: str) -> str:
+    from navcore.io.source import require_file
+
+    require_file(path, field=field)
     with opened(path) as stream:
         return f"{path.name}:{hashlib.file_digest(stream, 'sha256').hexdigest()}"

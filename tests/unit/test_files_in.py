@@ -169,3 +169,14 @@ def test_no_more_is_read_than_is_allowed(tmp_path: Path) -> None:
     assert read_bytes(tmp_path / "file", 5) == b""
     with pytest.raises(OSError, match="Invalid argument"):
         regular("a\0b")
+
+
+@pytest.mark.parametrize("name", ["pipe", "missing"])
+def test_a_recording_that_no_method_reads_is_refused_by_its_field(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was met when the scenario was hashed, after the run, and told as one that was stopped."""
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "ship.toml").write_text(f'run.duration_h = 0.01\n[reference]\nfile = "{name}"\n')
+    assert main(["run", str(tmp_path / "ship.toml"), "--quiet"]) == 2
+    assert "reference.file" in capsys.readouterr().err
