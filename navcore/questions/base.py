@@ -181,6 +181,8 @@ class Question(Parameters):
             return cls.model_validate(dict(data))
         except ValidationError as error:
             raise InputError(_faults(error, cls, dict(data))) from None
+        except UnicodeEncodeError as error:  # a path that is no UTF-8, which pydantic cannot quote
+            raise InputError(Fault("", cls.subject, error.object, Text("is no UTF-8 text"))) from None
 
     @classmethod
     def options(cls) -> tuple[Option, ...]:
