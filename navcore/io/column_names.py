@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from navcore.io.written_units import UNITS, unit_of, without_brackets, written
+from navcore.io.written_units import UNITS, unaccented, unit_of, without_brackets, written
 
 UTC, UNIX, SECONDS, DATE, CLOCK = "utc", "unix", "t_s", "date", "clock"
 """Columns of time: a date and time, Unix time, s since the file's own zero; a date and a time apart."""
@@ -44,18 +44,21 @@ def _of(dimension: str, low: float, high: float, unit: str, names: str) -> Quant
 QUANTITIES = {
     "lat": _of(
         "angle", -90, 90, "deg",
-        "lat latitude ship_latitude gps_lat gps_latitude pos_lat lat_dd dec_lat decimal_latitude latitude_n",
+        "lat latitude ship_latitude gps_lat gps_latitude pos_lat lat_dd dec_lat decimal_latitude latitude_n "
+        "breite breitengrad geographische_breite latitud latitudine",
     ),
     "lon": _of(
         "angle", -180, 360, "deg",
         "lon long longitude lng ship_longitude gps_lon gps_long gps_longitude pos_lon lon_dd dec_lon "
-        "decimal_longitude longitude_e",
+        "decimal_longitude longitude_e lange laenge langengrad laengengrad geographische_lange longitud "
+        "longitudine",
     ),
     "height": _of("length", -1e4, 1e5, "m", "height altitude alt ellipsoidal_height gps_height gps_altitude"),
     "heading": _of(
         "angle", -360, 360, "deg",
         "heading hdg hdt heading_true true_heading ship_heading ship_hdg gyro gyro_heading heading_gyro "
-        "gyro_hdg pl_hd pl_hd1 ths yaw",
+        "gyro_hdg pl_hd pl_hd1 ths yaw steuerkurs kreiselkurs kreisel rechtweisender_kurs kurs_rw rwk cap "
+        "cap_vrai cap_gyro rumbo_verdadero prua",
     ),
     "pitch": _of("angle", -90, 90, "deg", "pitch ship_pitch"),
     "roll": _of("angle", -180, 180, "deg", "roll ship_roll"),
@@ -68,7 +71,9 @@ QUANTITIES = {
     "speed": _of(
         "speed", -1e3, 1e3, "kn",
         "speed stw speed_through_water speed_thru_water water_speed speed_water log_speed speed_log log sow "
-        "speed_over_water lon_water_speed lon_water_spd longitudinal_water_speed water_speed_forward vhw",
+        "speed_over_water lon_water_speed lon_water_spd longitudinal_water_speed water_speed_forward vhw "
+        "fahrt_durchs_wasser fahrt_durch_wasser fdw fd_w "
+        "vitesse_surface vitesse_eau vitesse_loch velocidad_agua",
     ),
     "speed_starboard": _of(
         "speed", -1e3, 1e3, "kn",
@@ -84,12 +89,14 @@ QUANTITIES = {
     ),
     "sog": _of(
         "speed", -1e3, 1e3, "kn",
-        "sog speed_over_ground ground_speed gps_speed spd_over_grnd gps_sog vtg_speed",
+        "sog speed_over_ground ground_speed gps_speed spd_over_grnd gps_sog vtg_speed spd "
+        "fahrt_uber_grund fahrt_ueber_grund fug fueg vitesse_fond vitesse_sol velocidad_fondo",
     ),
     "cog": _of(
         "angle", -360, 360, "deg",
         "cog course course_over_ground course_made_good track_made_good gps_cog gps_course true_course "
-        "true_track pl_crs",
+        "true_track pl_crs gcrs bearing kurs_uber_grund kurs_ueber_grund kug kueg kurs route_fond route_sol "
+        "rumbo_fondo",
     ),
 }  # fmt: skip
 """By what the quantity is called here; ``speed`` is through the water, ``ground`` over it, along the axes."""
@@ -120,10 +127,11 @@ _TIMES = {
     UTC: "utc time timestamp datetime date_time iso_time isotime time_utc utc_time gps_time timestamp_utc "
     "gpst stamp header_stamp field_header_stamp rosbag_timestamp utc_timestamp datetime_utc date_time_utc "
     "utc_datetime time_iso iso8601 date_time_iso time_gmt "
-    "gmt_time datetime_gmt gmt",
+    "gmt_time datetime_gmt gmt base_date_time basedatetime received_at recorded_at zeit uhrzeit zeitstempel "
+    "datum_uhrzeit datum_zeit heure horodatage date_heure hora fecha_hora ora tnum datenum mjd",
     UNIX: "unix unix_time unixtime epoch epoch_time posix posix_time unix_s time_unix",
     SECONDS: "t_s t s sec seconds elapsed elapsed_s elapsed_seconds time_s time_sec time_seconds",
-    DATE: "date date_utc utc_date gps_date date_gmt gmt_date",
+    DATE: "date date_utc utc_date gps_date date_gmt gmt_date datum fecha",
 }
 _NAMES = {name: stem for stem, quantity in QUANTITIES.items() for name in quantity.names}
 _NAMES |= _OF_ERDDAP
@@ -183,7 +191,8 @@ def quantity_unit(quantity: Quantity) -> str:
 def known_columns(names: Sequence[str]) -> dict[str, Column]:
     """Columns that are used, by what they hold; of several for one quantity the best-known name.
 
-    A column ``time`` beside a column ``date`` holds the time of day (`CLOCK`).
+    A column ``time`` beside a column ``date`` holds the time of day (`CLOCK`). A column ``speed`` beside
+    positions and a course, without a heading, is a receiver's: over ground.
     """
     best: dict[str, tuple[int, Column]] = {}
     for index, name in enumerate(names):
@@ -193,6 +202,10 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
         if column.stem not in best or rank < best[column.stem][0]:
             best[column.stem] = rank, column
     chosen = {stem: column for stem, (_, column) in best.items()}
+    if {"speed", "lat", "lon", "cog"} <= chosen.keys() and not {"sog", "heading"} & chosen.keys():
+        bare = plain_name(without_brackets(chosen["speed"].name)[0])
+        if bare.partition("_")[0] == "speed" and not {"water", "log"} & set(bare.split("_")):
+            chosen["sog"] = replace(chosen.pop("speed"), stem="sog")
     if DATE in chosen:
         if UTC in chosen:
             column = chosen.pop(UTC)
@@ -241,8 +254,8 @@ def week_columns(names: Sequence[str]) -> list[int]:
 
 
 def plain_name(name: str) -> str:
-    """Lower case, words joined by underscores."""
-    return _SIGNS.sub("_", _HUMP.sub("_", name.strip()[:80]).lower()).strip("_")
+    """Lower case without accents, words joined by underscores."""
+    return _SIGNS.sub("_", unaccented(_HUMP.sub("_", name.strip()[:80]).lower())).strip("_")
 
 
 def misfits(names: Sequence[str]) -> list[Column]:

@@ -17,6 +17,7 @@ from navcore.io.column_names import (
     Column,
     known_columns,
     misfits,
+    plain_name,
 )
 from navcore.io.placeholders import AIS_NO_COURSE, not_available
 from navcore.io.series import LeftOut, Recording, Series, SourceReport, stream_report, tidy
@@ -144,6 +145,11 @@ def limited(where: str, faults: list[Fault]) -> list[Fault]:
     ]
 
 
+def _is_bare(column: Column) -> bool:
+    """Whether a name says speed and its unit alone."""
+    return not {"over", "ground", "made", "grnd", "gps"} & set(plain_name(column.name).split("_"))
+
+
 def column_warnings(names: Sequence[str], known: Mapping[str, Column]) -> list[str]:
     """Warn of columns that are not used, in case one is misspelt, and of units that were guessed."""
     used = {column.index for column in known.values()}
@@ -158,6 +164,13 @@ def column_warnings(names: Sequence[str], known: Mapping[str, Column]) -> list[s
         Text("column {name} left out: {unit} is no unit of what its name says", name=c.name, unit=c.unit)
         for c in misfits(names)
     ]
+    if (
+        "sog" in known
+        and plain_name(known["sog"].name).partition("_")[0] == "speed"
+        and _is_bare(known["sog"])
+    ):
+        name = known["sog"].name
+        words.append(Text("column {name} taken as over ground, beside a course and no heading", name=name))
     if ("sog" in known) != ("cog" in known):
         there = known.get("sog") or known["cog"]
         words.append(
@@ -286,6 +299,13 @@ def _without_placeholders(table: Table) -> Table:
     return replace(table, missing=missing, warnings=(*table.warnings, *told))
 
 
+def _hint(name: str, value: float) -> str:
+    """Unit that a latitude or longitude out of range may be in; or empty."""
+    if not name.startswith(("lat", "lon", "lng")) or not 1e5 < abs(value) <= 1.8e9:
+        return ""
+    return Text(" (counts of 1e-7 deg? Name the column {name}_e7)", name=name)
+
+
 def _range_faults(table: Table) -> list[Fault]:
     faults: list[Fault] = []
     checked = {
@@ -302,7 +322,12 @@ def _range_faults(table: Table) -> list[Fault]:
         column = [
             Fault(
                 Text("{where}, row {rows}", where=table.where, rows=table.rows[i]), name, float(values[i]),
-                Text("must be a number from {low:g} to {high:g}", low=low, high=high),
+                Text(
+                    "must be a number from {low:g} to {high:g}{hint}",
+                    low=low,
+                    high=high,
+                    hint=_hint(name, float(values[i])),
+                ),
             )
             for i in outside[:_MOST_FAULTS]
         ]  # fmt: skip

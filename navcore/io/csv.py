@@ -27,6 +27,7 @@ from navcore.io.column_names import (
     Column,
     known_columns,
     other_columns,
+    plain_name,
     week_columns,
 )
 from navcore.io.columns import (
@@ -50,6 +51,8 @@ from navcore.io.table_flags import flag_columns, heed
 from navcore.io.table_layout import COMMENTS, head_of_text, holds_number, is_row, is_units, layout_of
 from navcore.io.table_times import Table
 from navcore.io.times.counts import GPS_EPOCH_S, gps_to_unix
+from navcore.io.times.parts import part_columns, times_of_parts
+from navcore.io.written_units import without_brackets
 
 _WEEK_AND_SECONDS = re.compile(r"\s*\d{1,4}(?:\.0*)? +\d{1,6}(?:\.\d*)?\s*")
 
@@ -100,10 +103,14 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
                 first=header_line[:80],
             )
             raise InputError(Fault(where, "", None, allowed))
-        clock = week_columns(header)
+        clock, parts = week_columns(header), dict[str, int]()
+        if not clock and not {UTC, UNIX} & known_columns(header[:MOST_COLUMNS]).keys():
+            parts = part_columns([plain_name(without_brackets(name)[0]) for name in header[:MOST_COLUMNS]])
+            clock = list(parts.values())
         named = [UTC if clock[:1] == [index] else name for index, name in enumerate(header)]
         rows = Rows(header, require_columns(where, named))
         rows.heeded |= set(clock)
+        rows.parts = tuple(parts)
     else:
         separator, header_line, header = mapped_layout(head_of_text(text), column_map)
         found = column_map.log_columns(where, header)
@@ -360,6 +367,8 @@ def _timing(
         time_s, dated = clock.read(where, cells, numbered)
         rows.warnings += clock.warnings()
         return time_s, dated, name
+    if rows.parts and cells:
+        return _of_parts(where, rows, cells, numbered, name)
     if column.stem == UTC and cells and all(map(_WEEK_AND_SECONDS.fullmatch, cells)):
         weeks = MappedClock(TimeMap(column=name, unit=GPS_WEEK))
         time_s, dated = weeks.read(where, cells, numbered)
@@ -381,6 +390,25 @@ def _timing(
     time_s, dated, told = numeric_times(where, column, parsed)
     rows.warnings += told
     return time_s, dated, name
+
+
+def _of_parts(
+    where: str, rows: Rows, cells: Sequence[str], numbered: Sequence[int], name: str
+) -> tuple[np.ndarray, bool, str]:
+    """Times of which each part stands in a column of its own."""
+    try:
+        table = np.array([cell.split() for cell in cells], dtype=float)
+        time_s = times_of_parts(dict(zip(rows.parts, table.T, strict=True)))
+    except ValueError:
+        time_s = np.full(len(cells), np.nan)
+    bad = np.flatnonzero(np.isnan(time_s))
+    if bad.size:
+        allowed = Text("is no date and time by {parts}", parts=", ".join(rows.parts))
+        at = Text("{where}, row {number}", where=where, number=numbered[int(bad[0])])
+        raise InputError(Fault(at, name, cells[int(bad[0])], allowed))
+    told = Text("the time is read from {parts}, taken as UTC", parts=", ".join(rows.parts))
+    rows.warnings.append(told)
+    return time_s, True, name
 
 
 def _as_numbers(cells: Sequence[str]) -> np.ndarray | None:

@@ -86,7 +86,7 @@ def imu_columns(names: Sequence[str]) -> dict[tuple[str, str], ImuColumn]:
 
 def imu_column(index: int, name: str) -> ImuColumn | None:
     """Meaning of a name; None when it is no column of an IMU."""
-    bare, texts = without_brackets(name)
+    bare, texts = without_brackets(_lettered(name))
     plain = plain_name(bare)
     words = plain.split("_")
     for length in range(min(3, len(words) - 1), -1, -1):
@@ -105,6 +105,20 @@ def imu_column(index: int, name: str) -> ImuColumn | None:
             given = {RATE: "rad_s", FORCE: "mps2"}[kind]
         return ImuColumn(index, name.strip(), kind, axis, given, strange)
     return None
+
+
+_OF_PX4 = {"_rad": "_rad_s", "_m_s2": "_m_s2"}
+"""Ends of PX4's indexed names, and the units that they mean."""
+
+
+def _lettered(name: str) -> str:
+    """``gyro_rad[0]`` of PX4, a rate in rad/s, as ``gyro_x_rad_s``; other names as they are."""
+    name = name.strip()
+    if name[-3:] not in ("[0]", "[1]", "[2]"):
+        return name
+    axis, bare = AXES[int(name[-2])], name[:-3]
+    end = next((end for end in _OF_PX4 if bare.endswith(end)), "")
+    return f"{bare.removesuffix(end)}_{axis}{_OF_PX4.get(end, '')}"
 
 
 def _meant(words: list[str]) -> tuple[str, str] | None:

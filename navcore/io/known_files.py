@@ -105,6 +105,14 @@ KNOWN = (
     Known(Text("an Arrow or Feather table"), Text("save it as Parquet"), (b"ARROW1", b"FEA1")),
     Known(Text("a ROS bag"), _EXPORT, (b"#ROSBAG V",)),
     Known(Text("an MCAP recording"), _EXPORT, (b"\x89MCAP",)),
+    Known(Text("a PX4 log (ULog)"), Text("convert it: ulog2csv log.ulg"), (b"ULog\x01\x12\x35",)),
+    Known(
+        Text("an ArduPilot log (DataFlash)"),
+        Text("convert it: mavlogdump.py --format csv --types GPS log.bin"),
+        (b"\xa3\x95\x80\x80",),
+    ),
+    Known(Text("a LabVIEW recording (TDMS)"), Text("export its channels as CSV"), (b"TDSm",)),
+    Known(Text("an MDF recording of a vehicle's bus"), Text("export its channels as CSV"), (b"MDF     ",)),
     Known(
         Text("NetCDF of version 5 (64-bit data)"),
         Text("convert it: nccopy -k nc4 in.nc out.nc"),

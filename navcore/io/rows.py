@@ -39,5 +39,7 @@ class Rows:
     """Columns that say how good others are, by their places."""
     others: list[Column] = field(default_factory=list)
     """Columns of quantities for which another column is taken."""
+    parts: tuple[str, ...] = ()
+    """Parts of the time that stand in columns of their own, in the order in which the cells are joined."""
     layout: tuple[str, str] = "", ""
     """Separator and line of the header."""

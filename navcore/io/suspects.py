@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from navcore.foundation.earth import WGS84
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.io.series import Recording, Series, utc_text
@@ -17,6 +18,9 @@ _LARGEST_STEP = {"water": 2.5, "ground": 2.5, "velocity": 5.0, "heading": 20.0 *
 """m/s and rad from one sample to the next, which no ship does; also the size of a spike."""
 _LONGEST_SPIKE = 15
 """Samples; a longer run is no spike."""
+_FASTEST_MPS, _FAR_M = 60.0, 300.0
+"""A step between positions that is longer than this way is none of a ship."""
+_MOST_RUNS = 5
 _NAMES = {
     "water": Text("speed through water"),
     "ground": Text("speed over ground along axes"),
@@ -45,6 +49,8 @@ def suspect_warnings(recording: Recording) -> list[str]:
                     interval=series.interval_s,
                 )
             )
+        if name == "position":
+            words += _places_apart(series)
         if name not in _LARGEST_STEP or np.count_nonzero(series.valid) < 3 * _LONGEST_SPIKE:
             continue
         kept = np.flatnonzero(series.valid)
@@ -72,6 +78,40 @@ def suspect_warnings(recording: Recording) -> list[str]:
                 )
             )
     return words
+
+
+def _places_apart(series: Series) -> list[str]:
+    """Say which runs of positions lie where no ship gets to and back from between the others."""
+    far = np.flatnonzero(_far_steps(series.values, series.time_s))
+    runs = zip((far[:-1] + 1).tolist(), far[1:].tolist(), strict=True)
+    found: list[tuple[int, int]] = []
+    for first, last in runs:
+        if found and first <= found[-1][1] + 1 or 2 * (last - first + 1) > series.time_s.size:
+            continue
+        ends = np.array([first - 1, last + 1])
+        if not _far_steps(series.values[ends], series.time_s[ends]).any():
+            found.append((first, last))
+    return [
+        Text(
+            "positions: {count} from {when} lie {off:.3g} km from those before and after, farther than a "
+            "ship gets: leave the rows out",
+            count=last - first + 1,
+            when=_when(series, first, last),
+            off=_ways(series.values[[first - 1, first]])[0] / 1000.0,
+        )
+        for first, last in found[:_MOST_RUNS]
+    ]
+
+
+def _ways(places: np.ndarray) -> np.ndarray:
+    """Distances of neighbouring latitudes and longitudes, shape (n, k), in m."""
+    meridian, prime_vertical = WGS84.radii(float(places[0, 0]))
+    north, east = np.diff(places[:, 0]), (np.diff(places[:, 1]) + np.pi) % (2.0 * np.pi) - np.pi
+    return np.hypot(meridian * north, prime_vertical * np.cos(places[1:, 0]) * east)
+
+
+def _far_steps(places: np.ndarray, time_s: np.ndarray) -> np.ndarray:
+    return _ways(places) > _FAR_M + _FASTEST_MPS * np.diff(time_s)
 
 
 def _when(series: Series, first: int, last: int) -> str:

@@ -12,7 +12,13 @@ from navcore.io.nmea_flags import DEAD_RECKONED, HEADING_MODES, INVALID, MODES, 
 _FIX = ("lat", "lon", "height", "sog", "cog", "ve", "vn")
 _ROS = {"-1": INVALID} | dict.fromkeys("012", "")
 _RTKLIB = {"0": INVALID, "7": DEAD_RECKONED} | dict.fromkeys("123456", "")
-_VALID = STATUS | {"V": INVALID}
+_WORDS = dict.fromkeys(("VALID", "OK", "GOOD"), "") | dict.fromkeys(
+    ("INVALID", "NOT VALID", "BAD", "FAULT", "FAILED", "ERROR"), INVALID
+)
+_VALID = STATUS | {"V": INVALID} | _WORDS
+_TRUE = {"1": "", "TRUE": "", "YES": "", "0": INVALID, "FALSE": INVALID, "NO": INVALID} | _WORDS
+_FIX_TYPES = {"0": INVALID, "1": INVALID} | dict.fromkeys("2345678", "")
+"""Of MAVLink (PX4, ArduPilot) and UBX: 2 and more are fixes in two or three dimensions."""
 
 
 class TableFlag(NamedTuple):
@@ -36,11 +42,23 @@ class TableFlag(NamedTuple):
 _KINDS: tuple[tuple[str, tuple[str, ...], dict[str, str]], ...] = (
     ("fix_quality gps_quality gga_quality quality_indicator gps_qual fix_qual", _FIX, QUALITIES),
     ("mode_indicator faa_mode pos_mode positioning_mode rmc_mode vtg_mode", _FIX, MODES),
-    ("rmc_status gll_status gps_status nav_status fix_status status", _FIX, _VALID),
-    ("heading_mode ths_mode heading_status", ("heading",), HEADING_MODES | _VALID),
+    (
+        "rmc_status gll_status gps_status position_status pos_status nav_status fix_status status",
+        _FIX,
+        _VALID,
+    ),
+    (
+        "heading_mode ths_mode heading_status heading_quality heading_flag hdg_status gyro_status",
+        ("heading",),
+        HEADING_MODES | _VALID,
+    ),
     ("water_status log_status stw_status water_speed_status", ("speed", "speed_starboard"), _VALID),
     ("ground_status ground_speed_status", ("ground", "ground_starboard"), _VALID),
     ("status_status", _FIX, _ROS),
+    ("fix_type gps_fix_type gnss_fix_type", _FIX, _FIX_TYPES),
+    ("position_valid pos_valid fix_valid gps_valid gnss_valid position_ok", _FIX, _TRUE),
+    ("heading_valid hdg_valid gyro_valid heading_ok", ("heading",), _TRUE),
+    ("water_valid stw_valid log_valid speed_valid log_ok", ("speed", "speed_starboard"), _TRUE),
     ("q", _FIX, _RTKLIB),
 )
 TABLE_FLAGS = tuple(TableFlag(tuple(names.split()), stems, meanings) for names, stems, meanings in _KINDS)

@@ -4,12 +4,13 @@
 """
 
 import re
+import unicodedata
 from typing import NamedTuple
 
 from navcore.foundation.units import ARCSEC, DEG, KNOT, MICRO_G, STANDARD_GRAVITY
 
 UNITS = {
-    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "arcsec": ARCSEC},
+    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "arcsec": ARCSEC, "e7": 1e-7 * DEG},
     "speed": {
         "mps": 1.0, "kn": KNOT, "kmh": 1.0 / 3.6, "cms": 0.01, "mms": 1e-3, "mph": 0.44704, "fps": 0.3048,
     },
@@ -24,18 +25,20 @@ UNITS = {
 """SI over each unit, by dimension."""
 _SPELT = {
     "angle": {
-        "deg": "degs degree degrees deg_true degt degrees_true degrees_north degrees_east degree_north "
+        "deg": "degs degree degrees grad degre degres grados deg_true degt degrees_true "
+        "degrees_north degrees_east degree_north "
         "degree_east degrees_n degrees_e degree_n degree_e",
         "rad": "rads radian radians",
         "mrad": "milliradian milliradians",
         "urad": "microradian microradians",
         "arcsec": "arcsecond arcseconds",
+        "e7": "1e7 deg_e7 dege7 1e_7deg 1e_7_deg deg_1e7",
     },
     "speed": {
         "mps": "m_s ms meter_second meters_second metre_second metres_second m_sec m_s_1 ms_1 m_sec_1 "
         "meter_per_second meters_per_second metre_per_second metres_per_second meter_second_1 "
         "meters_second_1 metre_second_1 metres_second_1",
-        "kn": "kt kts kns knot knots nmi_h nm_h nmi_h_1 nm_h_1",
+        "kn": "kt kts kns knot knots knoten nd nds noeud noeuds nudos nodi nmi_h nm_h nmi_h_1 nm_h_1",
         "kmh": "km_h kph kmph km_hr km_h_1 km_hr_1 kilometers_per_hour kilometres_per_hour",
         "cms": "cm_s cm_s_1 cm_sec",
         "mms": "mm_s mm_s_1",
@@ -52,12 +55,12 @@ _SPELT = {
         "mi": "mile miles",
     },
     "time": {
-        "s": "sec secs second seconds",
+        "s": "sec secs second seconds sek sekunden secondes",
         "ms": "msec millis millisecond milliseconds",
         "us": "usec micros microsecond microseconds",
         "ns": "nsec nanos nanosecond nanoseconds",
-        "min": "minute minutes",
-        "h": "hr hrs hour hours",
+        "min": "minute minutes minuten",
+        "h": "hr hrs hour hours std stunden heures",
         "day": "d days",
     },
     "rate": {
@@ -96,9 +99,18 @@ _CONTRARY = frozenset("magnetic mag compass relative local lt".split())
 """Words that make another quantity of a column, whatever unit stands beside them."""
 _STAMP_FORM = re.compile(r"(?:y{2,4}|h{1,2})[ymdhs_tz0-9]{0,40}", re.IGNORECASE)
 _SPELLINGS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "·": " ", "⋅": " ", "µ": "u", "μ": "u"})
+_LIGATURES = str.maketrans({"œ": "oe", "æ": "ae", "ß": "ss"})
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]{1,30})[\])]")
 _LONGEST_NAME = 80
 _SIGNS = re.compile(r"[^a-z0-9]+")
+
+
+def unaccented(text: str) -> str:
+    """Text without accents: ``Länge`` as ``lange``, ``nœuds`` as ``noeuds``; ASCII as it is."""
+    if text.isascii():
+        return text
+    plain = unicodedata.normalize("NFKD", text.translate(_LIGATURES))
+    return "".join(letter for letter in plain if not unicodedata.combining(letter))
 
 
 class Written(NamedTuple):
@@ -150,5 +162,5 @@ def written(texts: list[str], dimension: str) -> Written:
 
 
 def _plain(text: str) -> str:
-    spelt = re.sub("[°º]", " deg ", text.translate(_SPELLINGS).lower())
+    spelt = unaccented(re.sub("[°º]", " deg ", text.translate(_SPELLINGS).lower()))
     return _SIGNS.sub("_", spelt).strip("_")

@@ -50,7 +50,7 @@ def test_a_flag_of_a_table_means_what_its_kind_says(
 
 
 def test_a_column_of_other_words_is_no_flag(tmp_path: Path) -> None:
-    read = read_recording(_table(tmp_path, COLUMNS, "status", ("OK", "V")))
+    read = read_recording(_table(tmp_path, COLUMNS, "status", ("MOORED", "V")))
     assert read.position is not None and read.position.time_s.size == 20
     assert any("columns not used: status" in told for told in read.warnings)
 

@@ -182,9 +182,9 @@ def test_a_row_of_units_below_the_header_is_heeded(tmp_path):
 
 
 def test_an_unknown_header_names_the_columns_found_and_those_needed(tmp_path):
-    found = faults(csv_file(tmp_path, "zeit\tkurs_mag\ttiefe\n1\t2\t3\n2\t3\t4\n"))
+    found = faults(csv_file(tmp_path, "takt\tkurs_mag\ttiefe\n1\t2\t3\n2\t3\t4\n"))
     assert len(found) == 2
-    assert all("columns found: zeit, kurs_mag, tiefe" in fault for fault in found)
+    assert all("columns found: takt, kurs_mag, tiefe" in fault for fault in found)
     assert "utc" in found[0] and "lat_deg" in found[1] and "speed_kn" in found[1]
 
 
