@@ -75,7 +75,8 @@ def _sign() -> Comparison:
         words=Text(
             "As printed ζ rises with the difference, to {printed:.1f} at 3 kn where "
             "Sun's own table has {table:.2f}: the worse the log, the harder it is "
-            "believed.",
+            "believed. Clamped to the table's 0.99 it stands there from 0.15 kn on; so "
+            "Sun's figures 10 to 12 come out, without adapting.",
             printed=printed[-1],
             table=table[-1],
         ),
@@ -215,14 +216,14 @@ SUN = (
         paper="Sun 2017",
         where="eq. 9",
         printed="ζ = 0.3076 d² + 1.1452 d + 0.8101",
-        right=Text("- 1.1452 d; better the table itself"),
-        consequence=Text("the damping rises with the difference instead of falling"),
+        right=Text("- 1.1452 d"),
+        consequence=Text("the damping rises with the difference instead of falling, and clamped it does not adapt"),
         compute=_sign,
     ),
     Misprint(
         id="sun-9-negative",
         paper="Sun 2017",
-        where=Text("eq. 9, sign mended"),
+        where=Text("eq. 9, sign mended, unclamped"),
         printed="ζ = 0.3076 d² - 1.1452 d + 0.8101",
         right=Text("the table, interpolated monotonically and clamped to 0.04 .. 0.99"),
         consequence=Text("negative damping between 0.95 and 2.77 kn"),

@@ -1,6 +1,7 @@
-"""``python -m tools.papers [--out FOLDER] [--only WORD]``: write the reproduction report."""
+"""``python -m tools.papers [--out FOLDER] [--only WORD] [--jobs COUNT]``: write the reproduction report."""
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -14,8 +15,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--only", default="", help="only exhibits whose name holds this; papers.md is printed"
     )
+    parser.add_argument(
+        "--jobs", type=int, default=min(2, os.cpu_count() or 1), help="processes, a paper each (default: 2)"
+    )
     given = parser.parse_args(arguments)
-    faults = write_report(papers(), given.out, given.only)
+    faults = write_report(papers(), given.out, given.only, given.jobs)
     for fault in faults:
         print(fault, file=sys.stderr)
     return 1 if faults else 0

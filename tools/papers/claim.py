@@ -16,9 +16,10 @@ from tools.papers.search import Search, Span
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Verdict = Literal["agrees", "differs", "undecided"]
+Verdict = Literal["agrees", "agrees if", "differs", "undecided"]
 """Agrees: our number, or its whole confidence interval, lies in the range. Differs: none of it does.
-Undecided: the interval reaches across an end of the range."""
+Undecided: the interval reaches across an end of the range. Agrees if: it does not agree in the claim's own
+setting, but it does in one of its readings."""
 Kind = Literal["predicted", "fitted", "direction only", "own"]
 """Predicted: a number from the paper's settings alone. Fitted: a number that a setting of ours was fitted to.
 Direction only: the paper states a relation, or its setting is too incomplete for more than one.
@@ -49,12 +50,14 @@ def order_of(value: float, factor: float = 3.0) -> Span:
 
 @dataclass(frozen=True)
 class Reading:
-    """Another way to read a claim's number or setting; it stands in the claim's row and counts as none.
+    """Another way to read a claim's number, or to fill in what is not printed; part of the claim's row.
+
+    Where the claim itself does not agree and a reading does, the verdict is "agrees, if" with its name.
 
     Attributes
     ----------
     name : str
-        How it is read: "as a variance".
+        The reading as it follows "if": "read as a variance".
     printed : str
         The paper's number in this reading.
     agreed : tuple of float
@@ -80,6 +83,9 @@ class Claim:
     ----------
     says : str
         What the paper says, in words.
+    quote : str
+        The paper's own words, or its row of a table, letter by letter; " ... " stands where something is left
+        out. A claim of kind "own" has none, and every other claim has one.
     printed : str
         Its number or relation as the paper gives it.
     agreed : tuple of float
@@ -94,8 +100,8 @@ class Claim:
     strapdown : bool
         Whether the number is computed in the full strapdown as well; both must agree.
     why : str
-        Why it differs. Empty when it agrees: the report fails when this and the numbers contradict. May
-        stand when the verdict is "undecided".
+        Why it differs. Empty when it agrees, be it in a reading: the report fails when this and the numbers
+        contradict. May stand when the verdict is "undecided".
     note : str
         What should be known even when it agrees.
     facts : mapping of str to callable
@@ -119,9 +125,10 @@ class Claim:
     facts: Mapping[str, Callable[[Runs], float]] = field(default_factory=dict)
     digits: int = 3
     readings: tuple[Reading, ...] = ()
+    quote: str = ""
 
     def verdict(self, *found: Estimate) -> Verdict:
-        """Agreement of all estimates with the range."""
+        """Agreement of all estimates with the range, without the readings."""
         positions = [one.position(*self.agreed) for one in found]
         if min(positions) < 0:
             return "differs"
@@ -164,7 +171,8 @@ class Exhibit:
     tables : tuple of callable
         Tables to print below.
     search : Search, optional
-        Over the settings that the paper does not print; every exhibit with a claim that differs has one.
+        Over the settings that the paper does not print; every exhibit with a claim that does not agree as it
+        is has one.
     draw : callable, optional
         Draws the picture on a matplotlib figure.
     height : float
@@ -189,3 +197,8 @@ class Paper:
     name: str
     reference: str
     exhibits: tuple[Exhibit, ...]
+
+
+def quoted_parts(quote: str) -> tuple[str, ...]:
+    """Parts of a quotation between what it leaves out."""
+    return tuple(part for part in quote.split(" ... ") if part)

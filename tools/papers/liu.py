@@ -17,7 +17,7 @@ from tools.papers.liu_fig_7 import FIGURE_7
 from tools.papers.liu_fig_11 import LONG
 from tools.papers.liu_tables import TABLES
 from tools.papers.liu_window import WINDOW
-from tools.papers.measure import departure, hours
+from tools.papers.measure import departure, hours, peak_gain
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs
 from tools.papers.search_liu import GAINS_SEARCH
@@ -60,11 +60,12 @@ def slope(low: float, high: float) -> float:
 
 def zeta_ratio(frequency: float | None, low: float = 0.1) -> float:
     """Gain at zeta = 0.9 over that at a lower one, at a frequency or (None) of the peaks."""
-    wide, narrow = (
-        gain(f'id = "complementary", zeta = {zeta}', FREQUENCIES if frequency is None else frequency)
-        for zeta in (0.9, low)
-    )
-    return float(np.max(wide) / np.max(narrow))
+    texts = (f'id = "complementary", zeta = {zeta}' for zeta in (0.9, low))
+    if frequency is None:
+        wide, narrow = (peak_gain(lambda p, text=text: gain(text, p), FREQUENCIES) for text in texts)
+    else:
+        wide, narrow = (float(gain(text, frequency)) for text in texts)
+    return wide / narrow
 
 
 def _draw_networks(runs: Runs, figure: Figure) -> None:
@@ -90,6 +91,19 @@ def _gain_table(runs: Runs) -> Table:
     return Table("Gain R omega_s |phi / dV_r| in dB:", ("frequency / omega_s", *NETWORKS), tuple(rows))
 
 
+_BEST_EFFECT = (
+    "the complementary filtering horizontal damping network has the best effect on suppressing the reference "
+    "velocity errors, especially on the high-frequency reference velocity errors"
+)
+_SLOPES = (
+    "It has 40 dB/10 dec or higher attenuation rate to both low-frequency and high-frequency reference "
+    "velocity errors."
+)
+_ALIKE = (
+    "the ability of different damping coefficients to suppress the reference velocity error is not much "
+    "different"
+)
+
 GAINS = Exhibit(
     name="liu-fig-3",
     title="Figures 3 and 5: what the networks let through of the log's error",
@@ -103,6 +117,7 @@ GAINS = Exhibit(
             at_least(0.0),
             lambda runs: advantage(10.0, "classic3"),
             "dB",
+            quote=_BEST_EFFECT,
         ),
         Claim(
             "the same at low frequency: against classic3 at 0.1 omega_s",
@@ -110,6 +125,7 @@ GAINS = Exhibit(
             at_least(0.0),
             lambda runs: advantage(0.1, "classic3"),
             "dB",
+            quote=_BEST_EFFECT,
             why="below the Schuler frequency all three fall alike with 40 dB a decade, and the complementary "
             "network lets through the most of the three (classic2 {classic2} dB less, classic3 {classic3} dB "
             "less).",
@@ -124,6 +140,7 @@ GAINS = Exhibit(
             at_least(39.5),
             lambda runs: slope(0.01, 0.1),
             "dB/dec",
+            quote=_SLOPES,
             kind="predicted",
         ),
         Claim(
@@ -132,6 +149,7 @@ GAINS = Exhibit(
             at_least(39.5),
             lambda runs: -slope(10.0, 100.0),
             "dB/dec",
+            quote=_SLOPES,
             kind="predicted",
         ),
         Claim(
@@ -139,6 +157,7 @@ GAINS = Exhibit(
             "not much different",
             about(1.0, 0.2),
             lambda runs: zeta_ratio(None),
+            quote=_ALIKE,
             note="The peaks are alike; where the networks fall off (10 omega_s) the gain is proportional to "
             "zeta: see the next line.",
         ),
@@ -147,6 +166,7 @@ GAINS = Exhibit(
             "not much different",
             about(1.0, 0.2),
             lambda runs: zeta_ratio(10.0),
+            quote=_ALIKE,
             why="1 - H has the factor 2 zeta (with eta = 0.5), so above the Schuler frequency a nine times "
             "smaller zeta lets nine times less through, and one three times smaller {third} times less. Only "
             "the peak hardly depends on zeta ({peak}).",
@@ -192,6 +212,22 @@ def _overshoot_table(runs: Runs) -> Table:
     return Table("Overshoot, counted from the standing value at 5 h:", head, tuple(rows))
 
 
+_SAME = (
+    "For the first and third situations, the variations of the reference velocity error are both 1 m/s "
+    "although the accelerations of reference velocity errors are different. Accordingly, the overshoot "
+    "errors caused by reference velocity errors are the same."
+)
+_IN_PROPORTION = (
+    "For the second and fourth situations, the variations of reference velocity errors are smaller and "
+    "larger than the first case, respectively, so the overshoot errors are smaller and larger than the first "
+    "case correspondingly. ... the dynamic overshoot caused by the reference velocity error is proportional "
+    "to the acceleration integral value of the reference velocity error"
+)
+_ALMOST_NONE = (
+    "For the fifth case, it almost does not have any overshoot error because the variation of the reference "
+    "velocity error in each cycle is zero."
+)
+
 OVERSHOOT = Exhibit(
     name="liu-fig-4",
     title="Figure 4: overshoot after five changes of the log's error",
@@ -204,6 +240,7 @@ OVERSHOOT = Exhibit(
             "the same",
             about(1.0, 0.02),
             lambda runs: overshoot(runs, 3) / overshoot(runs, 1),
+            quote=_SAME,
             kind="predicted",
             strapdown=True,
             digits=4,
@@ -213,6 +250,7 @@ OVERSHOOT = Exhibit(
             "smaller, in proportion",
             about(0.5, 0.02),
             lambda runs: overshoot(runs, 2) / overshoot(runs, 1),
+            quote=_IN_PROPORTION,
             kind="predicted",
             strapdown=True,
             digits=4,
@@ -222,6 +260,7 @@ OVERSHOOT = Exhibit(
             "larger, in proportion",
             about(1.5, 0.02),
             lambda runs: overshoot(runs, 4) / overshoot(runs, 1),
+            quote=_IN_PROPORTION,
             kind="predicted",
             strapdown=True,
             digits=4,
@@ -231,6 +270,7 @@ OVERSHOOT = Exhibit(
             "almost none",
             at_most(0.03),
             lambda runs: overshoot(runs, 5) / overshoot(runs, 1),
+            quote=_ALMOST_NONE,
             strapdown=True,
         ),
     ),

@@ -126,9 +126,9 @@ BUMPLESS = Exhibit(
     presets=(PRESET,),
     setting="No figure of the paper: these claims are ours. `bumpless` keeps the network's state and removes "
     "only the change of the log; `bridge` runs on an estimate while the log is not trusted (theory.md 12). "
-    "The lasting changes are those of tables 1 to 3; the episodes are of +1 m/s for 300 s every 30 min. "
-    "What the changes add is the paired difference from the same run, with the same noise, without any "
-    "change of the log.",
+    "The lasting changes are those of tables 1 to 3; the episodes are of +1 m/s for 300 s every 30 min. What "
+    "the changes add is the paired difference from the same run, with the same noise, without any change of "
+    "the log.",
     claims=(
         Claim(
             "lasting changes, log only: velocity RMS of ramp over that of bumpless",

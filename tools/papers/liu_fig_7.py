@@ -66,6 +66,8 @@ FIGURE_7 = Exhibit(
             "approximately equal",
             about(1.0, 0.2),
             lambda runs: overshoot(switched(runs, "hard")) / overshoot(fig_7(runs), 0),
+            quote="Figure 7 shows that the overshoot error when s = 0.25 m/s is approximately equal to the "
+            "overshoot error when the status switches to the undamping status",
             kind="predicted",
             why="when the filter is cleared the standing 0.5 m/s arrives as a step of 0.5 m/s on "
             "re-engagement ({hard} m/s against {step} m/s). A filter that is kept running has no overshoot.",
@@ -80,6 +82,7 @@ FIGURE_7 = Exhibit(
             "lower",
             at_most(1.0),
             lambda runs: overshoot(_switch(runs, "Liu 19")) / overshoot(_switch(runs, "hard")),
+            quote="this paper presented a method to suppress the switch overshoot",
             note="The recursion does this, not the ramp: (19) takes only the changes of its input, so that "
             "what stands while zeta is close to 0 never enters. With a filter that takes the whole "
             "difference the same ramp leaves {ramp} m/s.",

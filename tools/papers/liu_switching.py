@@ -130,8 +130,10 @@ def with_events(scenario: Scenario, events: Events) -> Scenario:
     return scenario.model_copy(update={"reference": scenario.reference.model_copy(update={"event": made})})
 
 
+NO_STANDING = "sea, no standing error"
 CASES: dict[str, Callable[[int], Scenario]] = {
     "sea": sea,
+    NO_STANDING: lambda seed: without_standing(sea(seed)),
     "log only": log_only,
     "episodes": episodes,
     "episodes at sea": episodes_at_sea,
@@ -166,18 +168,24 @@ def windowed(run: Run) -> np.ndarray:
     )
 
 
-def _studied(runs: Runs, case: str) -> tuple[np.ndarray, np.ndarray]:
-    """Errors of a case over the run and over the paper's windows, for each of the seeds."""
+def largest(run: Run) -> np.ndarray:
+    """Largest position error of each method, m, shape (methods,)."""
+    return np.array([float(np.max(m.rows[:, POSITION])) for m in run.methods])
+
+
+def _studied(runs: Runs, case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Errors of a case over the run, over the paper's windows, and at the largest, for each of the seeds."""
     seeds = STRAPDOWN_SEEDS if runs.strapdown else SEEDS
 
-    def make() -> tuple[np.ndarray, np.ndarray]:
-        found, parts = [], []
+    def make() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        found, parts, peaks = [], [], []
         for seed in seeds:
             scenario = CASES[case](seed)
             run = simulate(in_strapdown(scenario) if runs.strapdown else scenario)
             found.append(errors(run))
             parts.append(windowed(run))
-        return np.array(found), np.array(parts)
+            peaks.append(largest(run))
+        return np.array(found), np.array(parts), np.array(peaks)
 
     return runs.keep(("liu-switching", case, runs.strapdown), make)
 
@@ -191,6 +199,12 @@ def window_ratios(runs: Runs, case: str, ours: str, than: str) -> np.ndarray:
     """One method's position RMS over another's in each of `WINDOWS_H`, shape (seeds, windows)."""
     parts = _studied(runs, case)[1]
     return parts[:, METHODS.index(ours)] / parts[:, METHODS.index(than)]
+
+
+def largest_ratios(runs: Runs, case: str, ours: str, than: str) -> np.ndarray:
+    """One method's largest position error over another's with each of the seeds."""
+    peaks = _studied(runs, case)[2]
+    return peaks[:, METHODS.index(ours)] / peaks[:, METHODS.index(than)]
 
 
 def in_strapdown(scenario: Scenario) -> Scenario:

@@ -97,9 +97,9 @@ WINDOW = Exhibit(
     name="liu-eq-15",
     title="Equations 12 to 16: effect of n, t0 and count",
     presets=(PRESET,),
-    setting="The case at sea of tables 1 to 3, with the length n of the mean, the age t0 of the mean that "
-    "it is compared with, and the count of seconds for which a change must be wanted, each changed alone. "
-    "The paper gives n = 20 s, t0 = 80 s, count = 20 without showing others. The claim is ours.",
+    setting="The case at sea of tables 1 to 3, with the length n of the mean, the age t0 of the mean that it "
+    "is compared with, and the count of seconds for which a change must be wanted, each changed alone. The "
+    "paper gives n = 20 s, t0 = 80 s, count = 20 without showing others. The claim is ours.",
     claims=(
         Claim(
             "the printed values are a good choice: seeds of 8 in which no variant has a velocity error "

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from navcore.foundation.markdown import markdown_table
 from navcore.foundation.notation import in_symbols
-from tools.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
+from tools.papers.claim import KINDS, Claim, Exhibit, Kind, Paper, Table, Verdict, number
 from tools.papers.estimate import Estimate, estimate
 from tools.papers.runs import Runs
 from tools.papers.search import outcome, verdict
@@ -31,13 +31,16 @@ the paper prints. *Fitted*: a setting that the paper does not print was chosen s
 *Direction only*: the paper states a relation without a number, or prints too little of its setting for more.
 *Own*: the claim is ours, about what this project adds; it says nothing about a paper.
 
-Where a claim of a figure or table differs, the settings that the paper does not print were searched within
-the stated ranges for one that meets all its claims; *Search* says which one does, or which claims no setting
-meets together. The settings are judged by their means over the stated seeds, linear unless said otherwise.
+A paper is judged by what it prints, in its own setting where that is printed. What it does not print is
+filled in, and other choices are *readings*. A claim is one row, and its readings stand in the row. Where the
+claim does not agree in the exhibit's own setting but does in a reading, the verdict is *agrees, if* with the
+reading's name. Only what a paper says in so many words is a claim of it: the words are quoted below each
+table, and a test looks them up in the paper. What replaces a law of a paper here is judged apart, as our own.
 
-A claim is one row. Where a statement can be read in more than one way, every reading stands in its row;
-the verdict and the counts go by the first one, which fits the whole table or figure, for the reason given
-above it.
+Where a claim of a figure or table does not agree as it is, the settings that the paper does not print were
+searched. *Search* names what is varied and every value of it; all combinations are tried, and each is judged
+as a claim is, by the confidence interval over the stated seeds. It says which setting meets all claims of the
+exhibit, or which claims no setting meets together, and on what a claim does not depend.
 """
 
 
@@ -47,7 +50,7 @@ class Contradiction(Exception):
 
 @dataclass(frozen=True)
 class Checked:
-    """A claim with our numbers and the verdict."""
+    """A claim with our numbers and the verdict; ``condition``: the reading on which the verdict hangs."""
 
     claim: Claim
     linear: Estimate
@@ -56,6 +59,7 @@ class Checked:
     why: str
     note: str
     readings: tuple["Checked", ...] = ()
+    condition: str = ""
 
 
 def check(claim: Claim, runs: Runs) -> Checked:
@@ -67,10 +71,6 @@ def check(claim: Claim, runs: Runs) -> Checked:
         The verdict and ``claim.why`` contradict each other.
     """
     found = _measured(claim, runs)
-    if found.verdict != "undecided" and (found.verdict == "differs") != bool(claim.why):
-        ours = " / ".join(f"{one}" for one in (found.linear, found.strapdown) if one is not None)
-        raise Contradiction(f"{claim.says}: {ours} {found.verdict} with {claim.agreed}, why = {claim.why!r}")
-    facts = {name: _fact(fact(runs)) for name, fact in claim.facts.items()}
     others = (
         replace(
             claim,
@@ -81,12 +81,29 @@ def check(claim: Claim, runs: Runs) -> Checked:
         )
         for other in claim.readings
     )
+    readings = tuple(_measured(other, runs) for other in others)
+    verdict, condition = _decided(claim, found, readings)
+    if verdict != "undecided" and (verdict == "differs") != bool(claim.why):
+        ours = " / ".join(f"{one}" for one in (found.linear, found.strapdown) if one is not None)
+        raise Contradiction(f"{claim.says}: {ours} {verdict} with {claim.agreed}, why = {claim.why!r}")
+    facts = {name: _fact(fact(runs)) for name, fact in claim.facts.items()}
     return replace(
         found,
+        verdict=verdict,
+        condition=condition,
         why=claim.why.format_map(facts),
         note=claim.note.format_map(facts),
-        readings=tuple(_measured(other, runs) for other in others),
+        readings=readings,
     )
+
+
+def _decided(claim: Claim, found: Checked, readings: Sequence[Checked]) -> tuple[Verdict, str]:
+    """Verdict of a claim with its readings, and the reading on which it hangs."""
+    if found.verdict != "agrees":
+        for reading, other in zip(claim.readings, readings, strict=True):
+            if other.verdict == "agrees":
+                return "agrees if", reading.name
+    return found.verdict, ""
 
 
 def _measured(claim: Claim, runs: Runs) -> Checked:
@@ -111,33 +128,43 @@ def report(papers: Iterable[tuple[Paper, Sequence[tuple[Exhibit, str]]]]) -> str
     return "\n".join(parts)
 
 
-def summary(checked: Iterable[tuple[Paper, Exhibit, Sequence[Checked]]]) -> Table:
+Judged = tuple[Kind, Verdict]
+"""Kind of a claim and its verdict."""
+
+
+def judged(checked: Iterable[Checked]) -> list[Judged]:
+    """Kinds and verdicts of claims."""
+    return [(one.claim.kind, one.verdict) for one in checked]
+
+
+def summary(found: Iterable[tuple[Paper, Exhibit, Sequence[Judged]]]) -> Table:
     """One row an exhibit: how many claims of each kind agree, of how many; a last row with the sums."""
     head = (
         "paper",
         "figure or table",
         "preset",
         *(f"{kind}: agree" for kind in KINDS),
+        "agree, if",
         "differ",
         "undecided",
     )
     rows, everything = [], []
-    for paper, exhibit, found in checked:
+    for paper, exhibit, claims in found:
         link = f"[{exhibit.title}](#{exhibit.name})"
-        rows.append((paper.name, link, _presets(exhibit), *_counts(found)))
-        everything += found
+        rows.append((paper.name, link, _presets(exhibit), *_counts(claims)))
+        everything += claims
     rows.append(("all", "", "", *_counts(everything)))
     return Table("", head, tuple(rows))
 
 
-def _counts(found: Sequence[Checked]) -> tuple[str, ...]:
-    """For each kind "agreeing of all", empty where there is none; then how many differ or are open."""
+def _counts(found: Sequence[Judged]) -> tuple[str, ...]:
+    """For each kind "agreeing of all", empty where there is none; then the other three verdicts."""
     texts = []
     for kind in KINDS:
-        of_kind = [c for c in found if c.claim.kind == kind]
-        agree = sum(c.verdict == "agrees" for c in of_kind)
+        of_kind = [verdict for kind_of, verdict in found if kind_of == kind]
+        agree = of_kind.count("agrees")
         texts.append(f"{agree} of {len(of_kind)}" if of_kind else "")
-    others = (sum(c.verdict == verdict for c in found) for verdict in ("differs", "undecided"))
+    others = (sum(one == verdict for _, one in found) for verdict in ("agrees if", "differs", "undecided"))
     return (*texts, *(str(count) for count in others))
 
 
@@ -151,6 +178,7 @@ def exhibit_text(
     ]
     if checked:
         parts.append(table_text(_claims(checked)))
+        parts.append(_quotations(checked))
         parts.append(_notes(checked))
     parts.append(searched)
     parts.extend(table_text(table) for table in tables)
@@ -193,13 +221,22 @@ def _claims(checked: Sequence[Checked]) -> Table:
 
 def _with_readings(c: Checked, both: bool) -> list[str]:
     """Cells of a claim; another reading is named behind where it has another text."""
-    cells = _cells(c, both)
-    cells[-1] = cells[-1] if c.verdict == "agrees" else f"**{c.verdict}**"
+    plain = _cells(c, both)
+    cells = [*plain[:-1], _verdict_text(c)]
     for reading, other in zip(c.claim.readings, c.readings, strict=True):
-        for k, (first, text) in enumerate(zip(_cells(c, both), _cells(other, both), strict=True)):
-            if text != first:
+        for k, (first, text) in enumerate(zip(plain[:-1], _cells(other, both)[:-1], strict=True)):
+            if text and text != first:
                 cells[k] += f"; {reading.name}: {text}"
+        if other.verdict != c.verdict and reading.name != c.condition:
+            cells[-1] += f"; {reading.name}: {other.verdict}"
     return cells
+
+
+def _verdict_text(c: Checked) -> str:
+    """Text of a verdict; what is not plain agreement is bold."""
+    if c.verdict == "agrees":
+        return c.verdict
+    return f"**agrees, if** {c.condition}" if c.verdict == "agrees if" else f"**{c.verdict}**"
 
 
 def _cells(c: Checked, both: bool) -> list[str]:
@@ -222,6 +259,21 @@ def _value(claim: Claim, found: Estimate) -> str:
 
 
 _VERBS = {"differs": ("differs", "differ"), "undecided": ("is undecided", "are undecided")}
+
+
+def _quotations(checked: Sequence[Checked]) -> str:
+    """The paper's words, each stated once for all claims that share them."""
+    by_quote: dict[str, list[int]] = {}
+    for i, c in enumerate(checked, 1):
+        if c.claim.quote:
+            by_quote.setdefault(c.claim.quote, []).append(i)
+    lines = [f'- {_numbered(numbers)}, quoted: "{_plain(quote)}"' for quote, numbers in by_quote.items()]
+    return "\n".join(lines) + "\n" if lines else ""
+
+
+def _plain(quote: str) -> str:
+    """A quotation on one line, without what Markdown would take for its own."""
+    return " ".join(quote.split()).replace("\\", "\\\\").replace("|", "\\|").replace("*", "\\*")
 
 
 def _notes(checked: Sequence[Checked]) -> str:

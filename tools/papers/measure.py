@@ -1,6 +1,6 @@
 """Measures of the claims on a run: attitude errors, settling, peaks, spreads, intervals over seeds."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -53,6 +53,30 @@ def departure(time_s: np.ndarray, values: np.ndarray, begin_s: float, end_s: flo
 def spread(time_s: np.ndarray, values: np.ndarray, begin_s: float = 0.0) -> float:
     """Standard deviation from a time on."""
     return float(np.std(values[time_s >= begin_s]))
+
+
+def peak_gain(gain: Callable[[np.ndarray], np.ndarray], grid: np.ndarray) -> float:
+    """Largest value of a gain over frequency, found between the points of a grid and not only on them.
+
+    Parameters
+    ----------
+    gain : callable
+        Gain at frequencies, an array of the same shape.
+    grid : ndarray
+        Rising frequencies, > 0, so close that the peak lies beside the largest of them.
+    """
+    from scipy.optimize import minimize_scalar
+
+    on_grid = gain(grid)
+    k = int(np.clip(np.argmax(on_grid), 1, len(grid) - 2))
+    ends = np.log(grid[k - 1]), np.log(grid[k + 1])
+    found = minimize_scalar(
+        lambda x: -float(gain(np.array([np.exp(x)]))[0]),
+        bounds=ends,
+        method="bounded",
+        options={"xatol": 1e-9},
+    )
+    return max(-float(found.fun), float(np.max(on_grid)))
 
 
 def rms(values: np.ndarray) -> float:

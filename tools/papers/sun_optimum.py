@@ -81,9 +81,11 @@ OPTIMUM = Exhibit(
             about(0.99, 0.1),
             lambda runs: at_no_difference(runs, TILTED),
             kind="fitted",
+            quote="0.0 0.99 ... the optimal damping coefficient corresponding to all values of δV can be "
+            "obtained",
             readings=(
                 Reading(
-                    "drifts of the gyros alone",
+                    "only the gyros drift",
                     "0.99",
                     about(0.99, 0.1),
                     lambda runs: at_no_difference(runs, "pole2 as printed"),
@@ -100,6 +102,8 @@ OPTIMUM = Exhibit(
             about(0.99, 0.1),
             lambda runs: at_no_difference(runs, "complementary, drifting error"),
             kind="fitted",
+            quote="0.0 0.99 ... the optimal damping coefficient corresponding to all values of δV can be "
+            "obtained",
             note="So table 1's shape, from near 1 down to near 0, is right for a log whose error *changes*.",
         ),
     ),

@@ -13,6 +13,7 @@ from tools.papers.estimate import Estimate, ratio_estimate
 from tools.papers.measure import hours, mean_and_interval
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs, method
+from tools.papers.zhao_fast import FAST_VEHICLE, tilt_table
 from tools.papers.zhao_forecast import FORECAST
 from tools.papers.zhao_lines import PER_ROOT, PER_SAMPLE, READINGS, UNITS, left, lines
 
@@ -66,6 +67,16 @@ def _draw(preset: str, methods: tuple[str, ...], *overrides: str) -> Callable[[R
     return draw
 
 
+_QUOTES = {
+    "zhao-initial": "Schuler, Foucault, and Earth periodic oscillation errors caused by initial errors can "
+    "be suppressed",
+    "zhao-sensors": "the new method has good performance in suppressing Schuler, Foucault, and Earth "
+    "periodic oscillation errors as well",
+    "zhao-turntable": "the method can suppress Schuler periodic oscillation errors, Foucault periodic "
+    "oscillation errors, and Earth periodic oscillation errors effectively",
+}
+
+
 def _suppressed(preset: str, strapdown: bool) -> tuple[Claim, Claim]:
     """The claims on the Schuler lines and on the 24 h line, in both readings of the random walks."""
     texts = (
@@ -79,7 +90,7 @@ def _suppressed(preset: str, strapdown: bool) -> tuple[Claim, Claim]:
             return lambda runs: ratio_estimate(left(runs, preset, line, READINGS[preset][reading]))
 
         other = Reading(
-            f"random walks {PER_ROOT}", "suppressed effectively", at_most(EFFECTIVE), ours(PER_ROOT)
+            f"the random walks are {PER_ROOT}", "suppressed effectively", at_most(EFFECTIVE), ours(PER_ROOT)
         )
         return Claim(
             f"{texts[line]}; random walks {PER_SAMPLE}",
@@ -88,6 +99,7 @@ def _suppressed(preset: str, strapdown: bool) -> tuple[Claim, Claim]:
             ours(PER_SAMPLE),
             strapdown=strapdown,
             readings=(other,),
+            quote=_QUOTES[preset],
             note=_TILTED if line and preset == "zhao-sensors" else "",
             facts={"tilted": lambda runs: float(left(runs, preset, 1, TILTED, True).mean())},
         )
@@ -116,8 +128,8 @@ def _reading_table(preset: str) -> Callable[[Runs], Table]:
 _PER_ROOT = (
     "The first reading is the one that fits: per root of time, noise that arises after t = 0 raises new "
     "Schuler oscillations, which are the same in all copies and which no average removes, and the mean of "
-    "600 s of the gyros' output, from which the copy half a day ahead starts, errs by 0.012 deg/h, as "
-    "much as the bias."
+    "600 s of the gyros' output, from which the copy half a day ahead starts, errs by 0.012 deg/h, as much "
+    "as the bias."
 )
 
 INITIAL = Exhibit(
@@ -134,6 +146,7 @@ INITIAL = Exhibit(
             at_most(EFFECTIVE),
             lambda runs: left(runs, "zhao-initial", 0, one=True),
             strapdown=True,
+            quote=_QUOTES["zhao-initial"],
             note="What stays is mostly the split of the Schuler line by the Earth's rotation, which one "
             "delay cannot cancel; the cascade of both half periods does (table).",
         ),
@@ -143,6 +156,7 @@ INITIAL = Exhibit(
             at_most(EFFECTIVE),
             lambda runs: left(runs, "zhao-initial", 1, one=True),
             strapdown=True,
+            quote=_QUOTES["zhao-initial"],
         ),
         Claim(
             "the method is not affected by the motion of the vehicle: fraction left of the Schuler lines, "
@@ -153,11 +167,13 @@ INITIAL = Exhibit(
                 left(runs, "zhao-initial", 0, one=True) / left(runs, "zhao-initial", 0, AT_REST, True)
             ),
             strapdown=True,
+            quote="the method is not affected by the motion state of the carrier",
             note="It holds for initial errors. Biases that turn with the vehicle are no longer what they "
             "were at t = 0, and the average loses part of its effect: see figure 9, claim 3.",
         ),
+        *FAST_VEHICLE,
     ),
-    tables=(_table("zhao-initial", _FOUR),),
+    tables=(_table("zhao-initial", _FOUR), tilt_table),
     draw=_draw("zhao-initial", _FOUR),
     height=4.6,
 )
@@ -172,8 +188,8 @@ SENSORS = Exhibit(
     title="Figure 9: with sensor errors",
     presets=("zhao-sensors",),
     setting='As figure 8 with 0.01 deg/h, 1e-4 g and random walks, printed as "0.005 deg/h" and "5e-4 g". '
-    "The units are not those of a random walk; they are read as the standard deviation of one sample at "
-    "100 Hz (8.3e-6 deg/sqrt(h) and 50 ug/sqrt(Hz)), as in the preset, and as deg/sqrt(h) and g/sqrt(Hz). "
+    "The units are not those of a random walk; they are read as the standard deviation of one sample at 100 "
+    "Hz (8.3e-6 deg/sqrt(h) and 50 ug/sqrt(Hz)), as in the preset, and as deg/sqrt(h) and g/sqrt(Hz). "
     + _PER_ROOT,
     claims=(
         *_suppressed("zhao-sensors", True),
@@ -183,6 +199,9 @@ SENSORS = Exhibit(
             "weaker",
             (0.0, np.inf),
             lambda runs: left(runs, "zhao-sensors", 1) - _left_at_rest(runs),
+            quote="during the movement of carrier ... would vary over time due to the factors, such as "
+            "changes of the attitude, which weakens the effect of suppressing oscillation error caused by "
+            "them",
             note="{moving} of the 24 h line is left, at rest {rest}. Section 5.1.2 says of figure 8, without "
             "biases, that the motion does not matter.",
             facts={

@@ -189,6 +189,8 @@ FORECAST = Exhibit(
             at_most(0.0),
             not_found,
             "s",
+            quote="angular movements of the IMU happened during 100 s~105 s and 198 s~203 s. Therefore, the "
+            "time when the angular motions occurred can be distinguished by variation of",
             kind="predicted",
             note="Two seconds on either side are left out as well.",
         ),
@@ -198,6 +200,8 @@ FORECAST = Exhibit(
             (0.01, np.inf),
             lambda runs: np.abs(forecast_errors(runs, kept=True)[:, 0]),
             "deg/h",
+            quote="small angular motions bring a certain bias to forecasted time series obtained by curve "
+            "fitting based on least square method",
         ),
         Claim(
             "figure 6: with the motions removed the forecast is unbiased but for the gyro's own bias: error "
@@ -206,11 +210,13 @@ FORECAST = Exhibit(
             (-1e-3, 1e-3),
             lambda runs: forecast_errors(runs)[:, 0],
             "deg/h",
+            quote="Since the least squares method is a type of unbiased estimator, forecasted time series "
+            "still contains gyro bias drift and accelerometer bias.",
             kind="predicted",
             note="The forecast is of order 0, and earlier parts of the record are turned into the attitude "
             "of the last one. Other fits, and (26) as printed, are settings (last table): with (26) the last "
-            "part alone counts. A line scatters by {line} deg/h after 12 h; with 0.005 deg/sqrt(h) by "
-            "some 3 deg/h.",
+            "part alone counts. A line scatters by {line} deg/h after 12 h; with 0.005 deg/sqrt(h) by some 3 "
+            "deg/h.",
             facts={"line": lambda runs: float(np.std(fit_errors(runs, 1, False, 43200.0)[0]))},
         ),
     ),
