@@ -197,16 +197,16 @@ def test_a_field_that_must_not_vary_is_named(vary: str, told: str) -> None:
 @pytest.mark.parametrize(
     ("preset", "method", "fields", "acting"),
     [
-        ("sun-ship", 2, ("network.zeta",), ("r", "zeta2", "alpha")),
+        ("sun-ship", 3, ("network.zeta",), ("r", "zeta2", "alpha")),
         ("zha-drive", 2, ("network.k2", "network.sigma"), ("realisation",)),
-        ("own network", 2, ("policy.network.zeta", "network.zeta", "network.r"), ()),
+        ("own network", 3, ("policy.network.zeta", "network.zeta", "network.r"), ()),
     ],
 )
 def test_a_parameter_that_the_policy_sets_is_refused_with_that_reason(
     preset: str, method: int, fields: tuple[str, ...], acting: tuple[str, ...]
 ) -> None:
     """On the command line, in the page's offer and its sliders; no front replaces such a network."""
-    own = 'method.2.policy={id="adaptive", network={id="unity2", zeta=0.5}}'
+    own = 'method.3.policy={id="adaptive", network={id="unity2", zeta=0.5}}'
     scenario = load("sun-ship", [own]) if preset == "own network" else load(preset)
     policy = scenario.method[method].policy.id
     for field in fields:
@@ -215,7 +215,7 @@ def test_a_parameter_that_the_policy_sets_is_refused_with_that_reason(
         ) as caught:
             read_varied(scenario, [f"method.{method}.{field}=0.1:1"])
         assert f"method.{method}.{field}" in str(caught.value)
-    assert tunable_fields(scenario, method) == (("method.2.network.r",) if "r" in acting else ())
+    assert tunable_fields(scenario, method) == ((f"method.{method}.network.r",) if "r" in acting else ())
     with pytest.raises(InputError, match=f'has no fronts: policy "{policy}" sets'):
         pareto(scenario, method=method)
     assert measured(scenario, ("tilt_rms", "velocity_rms"), method) is None
@@ -231,14 +231,14 @@ def test_what_is_tuned_is_what_runs() -> None:
     """The adaptive policy sets zeta: its value changes no run; the loop that is judged is the run's own."""
     short = ["run.duration_h=2"]
     first, second = (
-        simulate(load("sun-ship", [*short, f"method.2.network.zeta={zeta}"])).methods[2]
+        simulate(load("sun-ship", [*short, f"method.3.network.zeta={zeta}"])).methods[3]
         for zeta in (0.5, 5.0)
     )
     assert np.array_equal(first.rows, second.rows)
-    found = tune(load("sun-ship", short), "settling_s", ["method.2.network.r=1.1:2"])
+    found = tune(load("sun-ship", short), "settling_s", ["method.3.network.r=1.1:2"])
     assert found.judged == "ensemble"
     assert found.before is not None and found.before == first.loop.settling_s
-    assert found.objective == simulate(found.scenario).methods[2].loop.settling_s
+    assert found.objective == simulate(found.scenario).methods[3].loop.settling_s
     assert found.objective < 0.9 * found.before
 
 

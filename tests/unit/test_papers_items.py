@@ -47,3 +47,9 @@ def test_the_report_has_the_table() -> None:
     for paper in PAPERS:
         for row in paper["rows"]:
             assert f"| {' | '.join(item_row(paper['name'], *row))} |" in report
+
+
+@pytest.mark.parametrize("paper", PAPERS, ids=lambda paper: paper["name"])
+def test_the_statements_of_the_text_have_rows_and_stand_in_a_section_that_exists(paper: dict) -> None:
+    stated = [item.removeprefix("section ") for item, _, _ in paper["rows"] if item.startswith("section")]
+    assert stated and set(stated) <= set(paper["sections"])

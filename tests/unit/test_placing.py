@@ -80,13 +80,13 @@ def test_what_cannot_be_placed_says_why_and_where_the_pair_is(
 
 def test_what_a_policy_sets_has_neither_handle_nor_locus() -> None:
     before = load("sun-ship")
-    adaptive = before.method[2]
+    adaptive = before.method[3]
     assert adaptive.policy.id == "adaptive"
     told = 'policy "adaptive" sets ζ while it runs'
-    assert handle_of(before, 2)["told"] == f"No handle for {adaptive.name}: {told}."
+    assert handle_of(before, 3)["told"] == f"No handle for {adaptive.name}: {told}."
     for placing in (with_pair, with_nearest_pair):
         with pytest.raises(InputError, match=told):
-            placing(before, 2, 0.5, 1.0)
+            placing(before, 3, 0.5, 1.0)
     always = adaptive.model_copy(update={"policy": Constant()})
     assert "zeta" not in locus_fields(adaptive) and "zeta" in locus_fields(always)
 

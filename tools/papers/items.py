@@ -14,7 +14,8 @@ HEAD = """\
 
 ## Every item of the papers: where it is here
 
-Each numbered equation, figure and table has a row. *None* begins what is not here, with the reason. A tab in
+Each numbered equation, figure and table has a row, and so has each statement of the text that is an item of
+its own. *None* begins what is not here, with the reason. A tab in
 italics belongs to the page; its tab *Misprints* is the misprint laboratory.
 """
 _LINK = re.compile(r"\b([trp]):([\w-]+)")

@@ -15,6 +15,7 @@ from tools.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at
 from tools.papers.liu_bumpless import BUMPLESS
 from tools.papers.liu_fig_7 import FIGURE_7
 from tools.papers.liu_fig_11 import LONG
+from tools.papers.liu_maneuvers import LIMIT, MANEUVERS
 from tools.papers.liu_tables import TABLES
 from tools.papers.liu_window import WINDOW
 from tools.papers.measure import departure, hours, peak_gain
@@ -282,5 +283,5 @@ PAPER = Paper(
     "Liu 2021",
     "Liu, Wu, Hu, Zhang: *Design of variable damping INS for ships based on the variation of reference "
     "velocity error*, Journal of Sensors, 2021.",
-    (GAINS, OVERSHOOT, FIGURE_7, LONG, TABLES, WINDOW, BUMPLESS),
+    (GAINS, OVERSHOOT, MANEUVERS, LIMIT, FIGURE_7, LONG, TABLES, WINDOW, BUMPLESS),
 )

@@ -17,6 +17,7 @@ from tools.papers.measure import hours, peak
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs, method
 from tools.papers.search_sun import LAW_SEARCH, STEP_SEARCH
+from tools.papers.sun_bulge import BULGE
 from tools.papers.sun_optimum import OPTIMUM
 from tools.papers.sun_ship import SHIP
 from tools.papers.sun_table_law import TABLE_LAW
@@ -274,5 +275,5 @@ PAPER = Paper(
     "Sun 2017",
     "Sun, Xu, Liu, Zhang, Li, Tong: *An adaptive damping network designed for strapdown fiber optic "
     "gyrocompass system for ships*, Sensors 17 (3), 494, 2017.",
-    (STEP, LAW, OPTIMUM, SHIP, TABLE_LAW, VEHICLE),
+    (STEP, LAW, OPTIMUM, SHIP, TABLE_LAW, BULGE, VEHICLE),
 )
