@@ -22,7 +22,7 @@ from tools.papers.deng_errors import (
     of_seed,
     statistics,
 )
-from tools.papers.deng_reasons import NOTES_4, WHY_4
+from tools.papers.deng_reasons import WHY_4
 from tools.papers.deng_rows import draw_errors, no_oscillation, side_by_side, spreads
 from tools.papers.picture import curve, panel
 from tools.papers.runs import Runs, method
@@ -79,7 +79,7 @@ VEHICLE = Exhibit(
             lambda runs: improvement(runs, 7),
             quote="the accuracy of the position calculation is also improved",
         ),
-        *spreads("deng-vehicle", TABLE_4, CELLS_4, WHY_4, NOTES_4),
+        *spreads("deng-vehicle", TABLE_4, CELLS_4, WHY_4),
         Claim(
             "(3, 4) as printed work on a moving vehicle: largest pitch error over that of the corrected form "
             "(sigma = 0.13, which is fitted to table 1)",

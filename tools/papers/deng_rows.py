@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,7 +92,11 @@ def draw_errors(preset: str, methods: tuple[str, ...]) -> Callable[[Runs, Figure
 
 
 def spreads(
-    preset: str, printed: Printed, cells: tuple[str, ...], why: dict[str, str], notes: dict[str, str]
+    preset: str,
+    printed: Printed,
+    cells: tuple[str, ...],
+    why: dict[str, str],
+    notes: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Claim, ...]:
     """Each row of a table; "variance" read as a standard deviation, and the other readings beside it."""
 
@@ -111,7 +116,7 @@ def spreads(
             kind="fitted" if row in (0, 1, 3, 4) else "direction only",
             why=why.get(name, ""),
             note=notes.get(name, ""),
-            facts=effects(preset, row) if name in why or name in notes else {},
+            facts=_named(effects(preset, row), why.get(name, "") + notes.get(name, "")),
             readings=(
                 Reading("read as a variance", number(value**0.5), order_of(value**0.5, 2.0), ours),
                 *_fillings(preset, row, value),
@@ -120,6 +125,11 @@ def spreads(
         )
 
     return tuple(claim(row) for row in range(len(ROWS)))
+
+
+def _named(facts: dict[str, Callable[[Runs], float]], text: str) -> dict[str, Callable[[Runs], float]]:
+    """Those facts that a text names, so that no other is computed."""
+    return {name: fact for name, fact in facts.items() if f"{{{name}}}" in text}
 
 
 def _fillings(preset: str, row: int, value: float) -> tuple[Reading, ...]:
