@@ -217,7 +217,9 @@ SUN = (
         where="eq. 9",
         printed="ζ = 0.3076 d² + 1.1452 d + 0.8101",
         right=Text("- 1.1452 d"),
-        consequence=Text("the damping rises with the difference instead of falling, and clamped it does not adapt"),
+        consequence=Text(
+            "the damping rises with the difference instead of falling, and clamped it does not adapt"
+        ),
         compute=_sign,
     ),
     Misprint(

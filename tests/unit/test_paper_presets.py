@@ -77,7 +77,7 @@ def test_the_six_drives_of_zha_are_six_drives() -> None:
 def test_each_drive_of_zha_starts_levelled(name: str) -> None:
     """The initial tilt is what the accelerometers' biases leave: phi_E = -nabla_N/g, phi_N = nabla_E/g."""
     scenario = load(name)
-    heading = np.radians(scenario.motion.leg[0].heading_deg)
+    heading = np.radians(scenario.canonical()["motion"]["leg"][0]["heading_deg"])
     x, y, _ = 1e-6 * np.array(scenario.imu.accel_bias_ug)
     east, north = x * np.cos(heading) + y * np.sin(heading), y * np.cos(heading) - x * np.sin(heading)
     expected = np.degrees([-north, east]) * 60.0

@@ -141,7 +141,8 @@ def test_deng_every_sigma_has_its_corrected_and_its_printed_form():
 
 def test_sun_the_search_varies_the_law_and_the_network():
     scenario = sun_ship.ship_scenario(1, 0.0, 0.01, 0.006)
-    laws = {(one.policy.law, one.network.id) for one in scenario.method[2:]}
+    methods = scenario.canonical()["method"][2:]
+    laws = {(one["policy"].get("law", "table"), one["network"]["id"]) for one in methods}
     assert laws == set(product(("as_printed", "quadratic", "table"), ("pole2", "unity2")))
 
 

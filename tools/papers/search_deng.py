@@ -75,9 +75,8 @@ TURNTABLE_AXES = (
 )
 
 
-def _damped(sigma: float, xi: float = 0.707, **more: Any) -> dict[str, Any]:
-    network = {"id": "compass", "sigma": sigma, "xi": xi, **more}
-    form = more.get("realisation", "")
+def _damped(sigma: float, xi: float = 0.707, form: str = "") -> dict[str, Any]:
+    network = {"id": "compass", "sigma": sigma, "xi": xi} | ({"realisation": form} if form else {})
     return {"name": f"{sigma}, {xi} {form}".strip(), "damping": "external", "network": network}
 
 
@@ -143,7 +142,7 @@ DRIVE_AXES = (
 def drive_methods() -> list[dict[str, Any]]:
     """Free, and every sigma of the search in the corrected form and as printed."""
     sigmas = DRIVE_AXES[1].values.values()
-    forms = [_damped(sigma, **more) for sigma in sigmas for more in ({}, {"realisation": "as_printed"})]
+    forms = [_damped(sigma, form=form) for sigma in sigmas for form in ("", "as_printed")]
     return [{"name": "free", "damping": "free"}, *forms]
 
 

@@ -77,7 +77,7 @@ def zha_drive_overrides(preset: str, setting: Setting) -> tuple[str, ...]:
     x, y = (setting[BIAS] * sign for sign in setting[SIGNS])
     tilt = setting[START]
     if tilt is None:
-        heading = scenario_of(preset).motion.leg[0].heading_deg * DEG
+        heading = scenario_of(preset).canonical()["motion"]["leg"][0]["heading_deg"] * DEG
         east, north = (
             x * np.cos(heading) + y * np.sin(heading),
             y * np.cos(heading) - x * np.sin(heading),

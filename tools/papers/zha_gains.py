@@ -28,9 +28,9 @@ def left(runs: Runs, name: str, *overrides: str) -> float:
 
 def zha_8(runs: Runs, name: str) -> float:
     """Size of the steady tilt of a drift by (Zha 8), rad."""
-    run = runs(PRESET)
-    network = method(run, name).method.network
-    gain = network.k1 / ((1.0 + network.k2) * run.scenario.omega_s**2)
+    scenario = runs(PRESET).scenario
+    network = next(one["network"] for one in scenario.canonical()["method"] if one["name"] == name)
+    gain = network["k1"] / ((1.0 + network["k2"]) * scenario.omega_s**2)
     return gain * DRIFT_DPH * DEG_PER_HOUR
 
 
