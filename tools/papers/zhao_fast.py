@@ -11,7 +11,8 @@ from tools.papers.runs import Runs, method
 PRESET = "zhao-initial"
 INTERNAL, AVERAGED = "internal damping", "Zhao"
 AT_REST = "motion.kind=static"
-PERIODS_H = np.arange(8.0, 40.0, 0.02)
+COARSE_H, FINE_H = np.arange(8.0, 40.0, 0.5), np.arange(-0.5, 0.5, 0.02)
+"""Periods that are tried, and the finer ones around the best of them."""
 
 
 def earth_period_h(runs: Runs, quantity: int, *overrides: str) -> float:
@@ -31,7 +32,7 @@ def earth_period_h(runs: Runs, quantity: int, *overrides: str) -> float:
             basis = np.column_stack([*beside, np.cos(phase), np.sin(phase)])
             return float(np.sum((values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]) ** 2))
 
-        return float(min(PERIODS_H, key=misfit))
+        return float(min(min(COARSE_H, key=misfit) + FINE_H, key=misfit))
 
     return runs.keep(("zhao earth period", quantity, overrides, runs.strapdown), make)
 
