@@ -1,9 +1,9 @@
 """Alignment before navigation: coarse in the inertial frame, then the compass loop (theory.md 6.1).
 
-The vehicle is assumed not to travel (it may swing). Coarse: the mean of the gravity vector, which turns with
-the Earth in an inertial frame, gives up, its motion gives east (Deng 2019, section 3; analytic). Fine: the velocity
-is damped against V_r = 0 by feedback into the platform's rates, first the level channels, then the azimuth
-through the north channel, whose loop is (s^2 + 2 sigma s + sigma^2/xi^2)^2.
+The vehicle is assumed not to travel (it may swing). Coarse: the mean of the gravity vector, which turns
+with the Earth in an inertial frame, gives up, its motion gives east (Deng 2019, section 3; analytic). Fine:
+the velocity is damped against V_r = 0 by feedback into the platform's rates, first the level channels, then
+the azimuth through the north channel, whose loop is (s^2 + 2 sigma s + sigma^2/xi^2)^2.
 """
 
 import math

@@ -120,9 +120,9 @@ class Alignment(EitherUnit):
 
     ``compass`` (theory.md 6.1): the compass loop with V_r = 0, first its level channels, then the azimuth,
     on a vehicle that does not travel; ``initial_error`` is what it starts from. With ``coarse_s`` it starts
-    from a coarse alignment by the turning gravity vector (Deng 2019, section 3) instead, to which ``initial_error``
-    is added; a recorded IMU always has one. The sensors of the alignment are those of the navigation (same
-    biases), so that its result is correlated with their errors.
+    from a coarse alignment by the turning gravity vector (Deng 2019, section 3) instead, to which
+    ``initial_error`` is added; a recorded IMU always has one. The sensors of the alignment are those of the
+    navigation (same biases), so that its result is correlated with their errors.
     """
 
     kind: Literal["none", "compass"] = choice(
