@@ -223,15 +223,15 @@ class Adaptive(PolicyParameters):
         if self.law == "quadratic":
             texts.append(
                 Text(
-                    "adaptive: Sun 9 with its sign mended is held at 0.04 between 0.95 and 2.77 kn, where it is "
-                    "negative, and at 0.99 from 3.87 kn on"
+                    "adaptive: Sun 9 with its sign mended is held at 0.04 between 0.95 and 2.77 kn, where it "
+                    "is negative, and at 0.99 from 3.87 kn on"
                 )
             )
         if self.law == "as_printed":
             texts.append(
                 Text(
-                    "adaptive: Sun 9 as printed is held at ζ = 0.99 from a difference of 0.15 kn on: there it "
-                    "does not adapt"
+                    "adaptive: Sun 9 as printed is held at ζ = 0.99 from a difference of 0.15 kn on: there "
+                    "it does not adapt"
                 )
             )
         least = self.network_in_force(network).least_coefficient()
