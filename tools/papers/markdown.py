@@ -40,7 +40,9 @@ table, and a test looks them up in the paper. What replaces a law of a paper her
 Where a claim of a figure or table does not agree as it is, the settings that the paper does not print were
 searched. *Search* names what is varied and every value of it; all combinations are tried, and each is judged
 as a claim is, by the confidence interval over the stated seeds. It says which setting meets all claims of the
-exhibit, or which claims no setting meets together, and on what a claim does not depend.
+exhibit, or which claims no setting meets together, and on what a claim does not depend. A setting meets a
+claim only when the whole interval lies in the range; *no setting meets* therefore includes settings in which
+a claim is undecided.
 """
 
 
