@@ -54,7 +54,7 @@ from navcore.io.times.counts import GPS_EPOCH_S, gps_to_unix
 from navcore.io.times.parts import part_columns, times_of_parts
 from navcore.io.written_units import without_brackets
 
-_WEEK_AND_SECONDS = re.compile(r"\s*\d{1,4}(?:\.0*)? +\d{1,6}(?:\.\d*)?\s*")
+_WEEK_AND_SECONDS = re.compile(r"\d{1,4}(?:\.0{0,9})? {1,9}\d{1,6}(?:\.\d{0,9})?")
 
 
 def recognises(candidate: Candidate) -> bool:
@@ -369,7 +369,7 @@ def _timing(
         return time_s, dated, name
     if rows.parts and cells:
         return _of_parts(where, rows, cells, numbered, name)
-    if column.stem == UTC and cells and all(map(_WEEK_AND_SECONDS.fullmatch, cells)):
+    if column.stem == UTC and cells and all(_WEEK_AND_SECONDS.fullmatch(cell.strip()) for cell in cells):
         weeks = MappedClock(TimeMap(column=name, unit=GPS_WEEK))
         time_s, dated = weeks.read(where, cells, numbered)
         rows.warnings += [Text("{name}: GPS weeks and seconds, leap seconds removed", name=column.name)]

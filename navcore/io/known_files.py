@@ -142,12 +142,12 @@ class KnownText(NamedTuple):
     pattern: re.Pattern[str]
 
 
-_XML = r"\s*(?:<\?xml[^>]{0,200}\?>\s*)?(?:<!--.{0,400}?-->\s*)?"
+_XML = r"(?:<\?xml[^>]{0,200}\?>\s*)?(?:<!--.{0,400}?-->\s*)?"
 TEXTS = (
     KnownText(
         Text("a web page"),
         Text("save the file itself, not the page that offers it"),
-        re.compile(r"\s*(?:<!doctype html|<html)", re.IGNORECASE),
+        re.compile(r"<!doctype html|<html", re.IGNORECASE),
     ),
     KnownText(
         Text("a KML document"),
@@ -162,12 +162,12 @@ TEXTS = (
     KnownText(
         Text("an XML document"),
         Text("convert it to GPX or CSV"),
-        re.compile(r"\s*<\?xml(?!.{0,2000}<(?:\w{1,20}:)?gpx[\s>])", re.DOTALL),
+        re.compile(r"<\?xml(?!.{0,200}<(?:\w{1,20}:)?gpx[\s>])", re.DOTALL),
     ),
     KnownText(
         "JSON",
         Text("write its records as CSV, one row a record"),
-        re.compile(r'\s*(?:\{\s*"|\[\s*[\[{])'),
+        re.compile(r'\{\s{0,80}"|\[\s{0,80}[\[{]'),
     ),
     KnownText(
         Text("a RINEX file of raw observations"),
@@ -177,7 +177,7 @@ TEXTS = (
     KnownText(
         Text("a log of NovAtel messages"),
         _AS_NMEA,
-        re.compile(r"\s*[#%](?:BEST|INS|RAW|MARK|RANGE)\w{2,20},"),
+        re.compile(r"[#%](?:BEST|INS|RAW|MARK|RANGE)\w{2,20},"),
     ),
 )
 """By their first characters, where no format recognises a text."""
@@ -237,7 +237,7 @@ def _refuse_spreadsheet(path: Path, field: str) -> None:
 
 def refuse_known_text(name: str, text: str) -> None:
     """Refuse a text of a known kind that no format reads; raises `InputError`."""
-    found = next((one for one in TEXTS if one.pattern.match(text[:4096])), None)
+    found = next((one for one in TEXTS if one.pattern.match(text[:4096].lstrip())), None)
     if found is not None:
         allowed = Text("is {name}: {instead}", name=found.name, instead=found.instead)
         raise InputError(Fault(name, "", None, allowed))

@@ -15,7 +15,7 @@ LARGEST_FILE_BYTES = 64 * 1024 * 1024
 _MOST_ODD_BYTES = 0.01
 _FEW_ODD_BYTES = 8
 _NULS = re.compile(rb"\0{2,}")
-_HOLE = re.compile(rb"\0{9,}(?=[$!])")
+_HOLE = re.compile(rb"(?<!\0)\0{9,}(?=[$!])")
 """Where a logger lost its power: what stood before is cut, a sentence begins behind."""
 _CONTROL = rb"[\0-\x08\x0e-\x1f\x7f\xff]"
 _NOISE = re.compile(

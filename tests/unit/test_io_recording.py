@@ -109,7 +109,8 @@ def test_a_longer_run_than_the_record_names_what_there_is():
     assert "run.duration_h must be <= 0.1983" in fault.allowed
 
 
-def test_repeated_times_keep_their_first_reading(tmp_path):
+def test_readings_of_one_second_are_spread_over_it(tmp_path):
     lines = [stamped(0, "HEHDT,10.0,T"), stamped(0, "HEHDT,20.0,T"), stamped(1, "HEHDT,30.0,T")]
     heading = load(write(tmp_path / "gyro.txt", [*lines, sentence("GPZDA,1,2")])).heading
-    assert np.rad2deg(heading.values[:, 0]) == pytest.approx([10.0, 30.0])
+    assert np.rad2deg(heading.values[:, 0]) == pytest.approx([10.0, 20.0, 30.0])
+    assert np.diff(heading.time_s) == pytest.approx([0.5, 0.5])

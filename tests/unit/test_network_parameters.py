@@ -38,7 +38,11 @@ def test_out_of_range_names_field_value_and_whole_range() -> None:
         ("", "id", "is required"),
         ("id = 3", "id", "must be one of none"),
         ('id = "complementary", zetta = 1.0', "zetta", "did you mean zeta? known: id, zeta, eta"),
-        ('id = "complementary", zeta = "0.7"', "zeta", "must be a number, > 0 and <= 10"),
+        (
+            'id = "complementary", zeta = "0.7"',
+            "zeta",
+            "must be a number (write 0.7 without quotation marks), > 0 and <= 10",
+        ),
         ('id = "complementary", zeta = true', "zeta", "must be a number"),
         ('id = "complementary", zeta = nan', "zeta", "must be a finite number"),
         ('id = "pole2", variant = "both"', "variant", "'exact' or 'as_printed'"),
