@@ -3,6 +3,7 @@
 import re
 
 from navcore.foundation.text import Text
+from navcore.quantities import QUANTITIES
 
 _AXES = re.compile("[rlfbud]{3}")
 """Axes of an instrument, such as ``rfu``."""
@@ -45,8 +46,10 @@ _WORDS = {
 
 
 def choice_words(value: str) -> str:
-    """Words for a value of a field with choices; the value itself where it is a word."""
-    return value.upper() if _AXES.fullmatch(value) else _WORDS.get(value, value)
+    """Words for a value of a field with choices: a quantity has its label, a word stands for itself."""
+    if _AXES.fullmatch(value):
+        return value.upper()
+    return QUANTITIES[value].label if value in QUANTITIES else _WORDS.get(value, value)
 
 
 def chosen(values: tuple[str, ...], words: str) -> str:

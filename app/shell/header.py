@@ -32,7 +32,7 @@ _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
 _BEFORE_PICTURES = (
     '{state}<style>body::after{{content:"{title}\\a {rest}";position:fixed;left:70%;top:30%;z-index:20;'
     "transform:translateX(-50%);padding:14px 20px;border:1px solid #c9d2da;border-radius:8px;background:#fff;"
-    "color:#33475b;font:14px var(--sb-font,sans-serif);text-align:center;white-space:pre;"
+    "color:#33475b;font:15px var(--sb-font,sans-serif);text-align:center;white-space:pre;"
     "pointer-events:none}}</style>"
 )
 

@@ -8,12 +8,14 @@ from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
+from navcore.questions import QUESTIONS
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import Requirement
 from schuler_bench.editing import form
 from schuler_bench.editing.choices import choice_words, chosen
 
 assert issubclass(Scenario, Parameters), "importing it defines the models of all its blocks"
+assert all(issubclass(kind, Parameters) for kind in QUESTIONS.values()), "and this those of all questions"
 
 
 def models(base: type[BaseModel]) -> list[type[BaseModel]]:
