@@ -275,7 +275,7 @@ class LearnView(View):
         try:
             right = is_right(question, given, run)
         except NotANumber as error:
-            unreadable = Text("{error:html}. {example}", error=str(error), example=_UNREADABLE)
+            unreadable = Text("{error:html}. {example}", error=error.args[0], example=_UNREADABLE)
             return Text('<p class="sb-wrong"><b>{unreadable}</b></p>', unreadable=unreadable), False
         if right:
             why = to_html(question.why, run).removeprefix("<p>")
