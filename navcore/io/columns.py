@@ -303,7 +303,7 @@ def _hint(name: str, value: float) -> str:
     """Unit that a latitude or longitude out of range may be in; or empty."""
     if not name.startswith(("lat", "lon", "lng")) or not 1e5 < abs(value) <= 1.8e9:
         return ""
-    return Text(" (counts of 1e-7 deg? Name the column {name}_e7)", name=name)
+    return Text(" (counts of 1e-7°? Name the column {name}_e7)", name=name)
 
 
 def _range_faults(table: Table) -> list[Fault]:

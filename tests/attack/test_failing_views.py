@@ -137,7 +137,7 @@ def test_hours_out_of_range_are_refused_by_name_and_the_box_returns(
         visitor.set(PAGE_STATE, "1920x1080|Method|Frequency|Metrics")
         visitor.wait_for_run(1)
         before = visitor.held(f"measured {box} (h)")
-        visitor.set(f"measured {box} (h)", hours)
+        visitor.set(f"measured {box} (h)", repr(hours))
         visitor.wait(lambda: visitor.notices != [], "a notice")
         assert field in visitor.notices[0][1] and ">= 0 and <= 100000" in visitor.notices[0][1]
         visitor.wait(lambda: visitor.held(f"measured {box} (h)") == before, "the value before")

@@ -25,13 +25,16 @@ LINEAR = (
 START = {"attitude_arcmin": [0.17, -0.2, 4.5]}
 """Errors that the alignment leaves on the average, in place of the simulated alignment."""
 
+_COMPARED = ("free", DAMPED)
+"""Names of the methods whose lines are compared."""
+
 
 def both_lines(runs: Runs) -> np.ndarray:
     """Both Schuler lines of dV_N, whose beat is the Foucault oscillation, damped over free: (seeds, 2)."""
 
     def one(seed: int) -> list[float]:
         methods = scenario_of(PRESET).canonical()["method"]
-        chosen = [method for method in methods if method["name"] in ("free", DAMPED)]
+        chosen = [method for method in methods if method["name"] in _COMPARED]
         run = simulate(
             scenario_of(
                 PRESET, (*LINEAR, f"run.seed={seed}"), method=chosen, alignment={}, initial_error=START
