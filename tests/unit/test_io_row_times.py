@@ -160,10 +160,10 @@ def test_leap_seconds_learnt_on_the_way_are_taken_off(tmp_path: Path) -> None:
 
 
 HEADERS = {
-    "unknown names": ("zeit,breite,laenge\n", "columns found: zeit, breite, laenge"),
-    "in a comment": ("# zeit,breite,laenge\n", "columns found: zeit, breite, laenge"),
-    "below a title": ("Cruise 12\nship: Polarstern\n\nzeit,breite,laenge\n", "columns found: zeit, breite"),
-    "with units": ("zeit,breite,laenge\ns,deg,deg\n", "columns found: zeit, breite, laenge"),
+    "unknown names": ("takt,abszisse,ordinate\n", "columns found: takt, abszisse, ordinate"),
+    "in a comment": ("# takt,abszisse,ordinate\n", "columns found: takt, abszisse, ordinate"),
+    "below a title": ("Cruise 12\nship: Polarstern\n\ntakt,abszisse,ordinate\n", "columns found: takt, abszisse"),
+    "with units": ("takt,abszisse,ordinate\ns,deg,deg\n", "columns found: takt, abszisse, ordinate"),
     "none": ("", "has no line with the names of the columns"),
 }
 
