@@ -1,6 +1,7 @@
 """Measures of the claims on a run: attitude errors, settling, peaks, spreads, intervals over seeds."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -70,7 +71,7 @@ def peak_gain(gain: Callable[[np.ndarray], np.ndarray], grid: np.ndarray) -> flo
     on_grid = gain(grid)
     k = int(np.clip(np.argmax(on_grid), 1, len(grid) - 2))
     ends = np.log(grid[k - 1]), np.log(grid[k + 1])
-    found = minimize_scalar(
+    found: Any = minimize_scalar(
         lambda x: -float(gain(np.array([np.exp(x)]))[0]),
         bounds=ends,
         method="bounded",
