@@ -160,10 +160,10 @@ def test_leap_seconds_learnt_on_the_way_are_taken_off(tmp_path: Path) -> None:
 
 
 HEADERS = {
-    "unknown names": ("takt,abszisse,ordinate\n", "columns found: takt, abszisse, ordinate"),
-    "in a comment": ("# takt,abszisse,ordinate\n", "columns found: takt, abszisse, ordinate"),
-    "below a title": ("Cruise 12\nship: Polarstern\n\ntakt,abszisse,ordinate\n", "columns found: takt, abszisse"),
-    "with units": ("takt,abszisse,ordinate\ns,deg,deg\n", "columns found: takt, abszisse, ordinate"),
+    "unknown names": ("takt,ost,nord\n", "columns found: takt, ost, nord"),
+    "in a comment": ("# takt,ost,nord\n", "columns found: takt, ost, nord"),
+    "below a title": ("Cruise 12\nship: Polarstern\n\ntakt,ost,nord\n", "columns found: takt, ost"),
+    "with units": ("takt,ost,nord\ns,deg,deg\n", "columns found: takt, ost, nord"),
     "none": ("", "has no line with the names of the columns"),
 }
 
