@@ -12,7 +12,7 @@ import ast
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -85,14 +85,15 @@ def arrows(root: Path) -> dict[str, tuple[int, int]]:
             inside = {
                 (name, known[other])
                 for name in members
-                for other in _imported(trees[name], known)
+                for other in imports(trees[name], known)
                 if known[other] != name and known[other].rpartition("/")[0] == room
             }
             found[f"{package}/{room}".rstrip("/")] = (len(members), len(inside))
     return dict(sorted(found.items(), key=lambda item: -item[1][1]))
 
 
-def _imported(tree: ast.Module, known: dict[str, str]) -> Iterator[str]:
+def imports(tree: ast.AST, known: Mapping[str, object]) -> Iterator[str]:
+    """Modules among ``known`` that are imported anywhere, inside functions and for types only too."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in known)

@@ -10,6 +10,7 @@ import viser
 
 import schuler_bench
 from schuler_bench.views import VIEWS, load, scripts
+from tools.house import imports
 
 pytestmark = pytest.mark.contract
 
@@ -37,18 +38,6 @@ def modules(package: str) -> dict[str, ast.Module]:
         module_name(path): ast.parse(path.read_text(encoding="utf-8"))
         for path in sorted((ROOT / package).rglob("*.py"))
     }
-
-
-def imports(tree: ast.AST, known: Mapping[str, object]) -> Iterator[str]:
-    """Modules among ``known`` that are imported anywhere, inside functions and for types only too."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name in known)
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            for alias in node.names:
-                full = f"{node.module}.{alias.name}"
-                if full in known or node.module in known:
-                    yield full if full in known else node.module
 
 
 def room(module: str, depth: int) -> str:
