@@ -64,11 +64,25 @@
   // What the server has made of the text before does not displace the one that is being typed; Escape brings it.
   addEventListener("arrived", ({ detail }) => {
     for (const { type, uuid, updates } of detail) {
-      if (type !== "GuiUpdateMessage" || typed?.id !== uuid || updates.value === undefined || !window.schuler.holds(uuid)) continue;
-      before = updates.value;
-      delete updates.value;
+      if (type !== "GuiUpdateMessage" || updates.value === undefined) continue;
+      if (typed?.id === uuid && window.schuler.holds(uuid)) {
+        before = updates.value;
+        delete updates.value;
+      } else keepSelected(document.getElementById(uuid), updates.value);
     }
   });
+
+  // A text that arrives takes the selection away: who has selected all of a box replaces all of it, not a part.
+  function keepSelected(box, arriving) {
+    if (!isBox(box) || box !== document.activeElement || box.value === arriving) return;
+    if (box.selectionEnd === 0 || box.selectionStart !== 0 || box.selectionEnd !== box.value.length) return;
+    const again = (frames) => {
+      if (typed === box || box !== document.activeElement) return;
+      if (box.value === arriving) box.select();
+      else if (frames) requestAnimationFrame(() => again(frames - 1));
+    };
+    again(30);
+  }
 
   addEventListener(
     "keydown",
