@@ -46,6 +46,12 @@ MEANINGS: dict[str, str] = {
     },
 }
 """Words by what a map calls a quantity; the first three are no quantities."""
+_UNIT_SIGNS = {
+    "mps": "m/s", "kmh": "km/h", "cms": "cm/s", "mms": "mm/s", "fps": "ft/s", "nm": "nmi", "us": "µs",
+    "mps2": "m/s²", "fps2": "ft/s²", "ug": "µg", "rad_s": "rad/s", "mrad_s": "mrad/s", "deg_s": "°/s",
+    "mdeg_s": "m°/s", "deg_h": "°/h", "urad": "µrad", "e7": "1e-7 °", "deg": "°",
+}  # fmt: skip
+"""Units of a map as a reader writes them."""
 _DIMENSIONS = {"rad_s": "rate", "mps2": "force", "rad": "angle", "mps": "speed"}
 GUESSED = Text("as guessed")
 _LETTERS = {"%d": "DD", "%m": "MM", "%Y": "YYYY", "%H": "hh", "%M": "mm", "%S": "ss", ".%f": ".f"}
@@ -77,7 +83,7 @@ def units_for(data: Mapping[str, Any], table: Preview, column: str) -> dict[str,
         counts = (*UNITS["time"], GPS_WEEK)
         return {"": GUESSED, **forms, **{unit: unit.replace("_", " ") for unit in counts}}
     dimension = QUANTITIES[name].dimension if name in QUANTITIES else _DIMENSIONS[name.split("_", 1)[1]]
-    return {unit: unit for unit in ("", *UNITS[dimension])} | {"": GUESSED}
+    return {unit: shown(unit) for unit in ("", *UNITS[dimension])} | {"": GUESSED}
 
 
 def unit_of(data: Mapping[str, Any], column: str) -> str:
@@ -127,7 +133,9 @@ def asks_for_the_order(data: Mapping[str, Any], table: Preview) -> str:
 
 
 def shown(form: str) -> str:
-    """``%d.%m.%Y`` as DD.MM.YYYY; a unit as it is."""
+    """``%d.%m.%Y`` as DD.MM.YYYY, ``mps`` as m/s."""
+    if form in _UNIT_SIGNS:
+        return _UNIT_SIGNS[form]
     for sign, letters in _LETTERS.items():
         form = form.replace(sign, letters)
     return "ISO 8601" if form == "iso" else form
