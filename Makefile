@@ -7,7 +7,8 @@ STAMPS := .venv/.stamps
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --no-input --quiet
 # Says every two seconds that a step goes on: pip and venv say nothing.
 TICK   := seconds=0; while sleep 2; do seconds=$$((seconds + 2)); echo "   ... $$seconds s"; done & tick=$$!; trap 'kill $$tick' EXIT
-LOCKED := install --require-hashes --only-binary :all:
+# Not compiled to bytecode: that takes half of the time, and an import compiles what it needs.
+LOCKED := install --no-compile --require-hashes --only-binary :all:
 
 # A virtual environment that was copied, moved, or has lost its Python is made anew.
 MADE_HERE := $(shell test "`cat $(STAMPS)/python 2>/dev/null`" = "`pwd -P`" && $(BIN)/python -c 'import pip' 2>/dev/null && echo yes)
