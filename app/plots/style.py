@@ -26,7 +26,18 @@ METHOD_COLORS = (
     "#2F9C93",  # teal
     "#6B6B6B",  # grey
 )
-STANDING = {"free": 0, "undamped": 0, "classic2": 1, "classic3": 2, "complementary": 3, "eight copies": 3}
+STANDING = {
+    "free": 0,
+    "undamped": 0,
+    "classic2": 1,
+    "classic3": 2,
+    "damped, sigma = 0.0088": 2,
+    "complementary": 3,
+    "eight copies": 3,
+    "external, horizontal": 3,
+    "variation + Liu 19": 6,
+    "variation + bumpless": 7,
+}
 """Names of several presets, which stand in them at different places, and their places in the palette."""
 TRUTH_COLOR = "#1F2933"
 

@@ -137,7 +137,7 @@ def test_flaws_of_a_choice_are_told_with_the_result():
 
     policy = {"id": "adaptive", "law": "quadratic", "network": {"id": "pole2", "variant": "as_printed"}}
     warnings = simulate(scenario({"policy": policy})).methods[0].warnings
-    assert any("negative between 0.95 and 2.77 kn" in text for text in warnings)
+    assert any("between 0.95 and 2.77 kn, where it is negative" in text for text in warnings)
     assert any("below ζ = 0.104 the printed form is unstable" in text for text in warnings)
     exact, bumpless = parse_network({"id": "pole2"}), Bumpless()
     told = combination_warnings(exact, Constant(), bumpless)

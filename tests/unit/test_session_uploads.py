@@ -224,6 +224,8 @@ def test_a_wrong_map_changes_nothing_and_names_the_column(files: Uploads) -> Non
     with pytest.raises(InputError, match="when.*is no column of the file"):
         files.use_map("log.csv", wrong)
     with pytest.raises(InputError, match="quantity"):
+        files.use_map("log.csv", mapped(upload) | {"quantity": {}})
+    with pytest.raises(InputError, match="wann = '01/05/2024 12:00:00': may begin with the day or"):
         files.use_map("log.csv", with_meaning(upload.map, "wann", "time"))
     assert files.files["log.csv"] is upload and list(in_folder(files)) == ["log.csv"]
 
