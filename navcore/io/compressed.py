@@ -42,9 +42,10 @@ def unpacked(path: Path, most: int, field: str = "") -> bytes:
     refuse_known(path, field)
     with opened(path) as stream:
         head = stream.read(4)
-        kind = next((magic for magic in _NAMES if head.startswith(magic)), b"")
-        if not kind:
-            return head + stream.read()
+    kind = next((magic for magic in _NAMES if head.startswith(magic)), b"")
+    if not kind:
+        with opened(path) as stream:  # anew: a stream that has been read from copies the rest
+            return stream.read()
     try:
         content = _READERS[kind](path, most + 1)
     except InputError as error:
