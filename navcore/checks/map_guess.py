@@ -17,6 +17,7 @@ from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC,
 from navcore.io.columns import MOST_CELLS, MOST_COLUMNS
 from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
 from navcore.io.containers.opening import is_container, open_container
+from navcore.io.decimal_signs import decimal_of
 from navcore.io.imu_columns import AXES, DIMENSIONS, imu_columns
 from navcore.io.imu_table import imu_layout, is_imu_names, is_imu_table
 from navcore.io.recording import NO_TABLE, takes_map
@@ -138,10 +139,10 @@ def _number(row: tuple[str, ...], index: int, separator: str) -> float:
 def guess(table: Preview) -> dict[str, Any]:
     """Data of a map of a table (see `navcore.io.column_map`); what is not known is left out of it."""
     imu = is_imu_names(table.header)
-    comma = table.separator not in ("", ",") and any("," in cell for row in table.rows for cell in row)
+    columns = {name: table.cells(name) for name in table.header}
     return {
         "time": _time(table),
-        "decimal": "," if comma else ".",
+        "decimal": decimal_of(columns),
         **({"delimiter": table.separator} if table.separator else {}),
         "skip_bad_rows": False,
         "quantity": {

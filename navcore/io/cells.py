@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 
 import numpy as np
@@ -18,8 +18,6 @@ _EMPTY = frozenset(("", "-", "--", "na", "n/a", "null", "none"))
 _HEMISPHERE = re.compile(r"[\d.]{1,20}[ \d.'\"°:]{0,30} ?[NSEWnsew]")
 _NUMBER = re.compile(r"\d{1,9}(?:\.\d{0,15})?")
 _DAY = 86400.0
-_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
-_LOOKED_AT = 1000
 
 
 def is_empty(cell: str) -> bool:
@@ -42,25 +40,6 @@ def is_time(cell: str) -> bool:
         return math.isfinite(float(cell))
     except ValueError:
         return _moment(cell.strip(), StampReader()) is not None
-
-
-def pointed(cells: Sequence[str], decimal: str) -> Sequence[str]:
-    """Cells whose decimal commas are points; times with commas between date and time stay as they are."""
-    if decimal != ",":
-        return cells
-    return [cell.replace(",", ".") if _COMMA.fullmatch(cell.strip()) else cell for cell in cells]
-
-
-def uses_decimal_comma(columns: Iterable[Sequence[str]]) -> bool:
-    """Whether the first cells of a table that no comma parts have decimal commas, and none a point."""
-    found = False
-    for cells in columns:
-        commas = [cell for cell in cells[:_LOOKED_AT] if _COMMA.fullmatch(cell.strip())]
-        points = [cell for cell in cells[:_LOOKED_AT] if "." in cell and is_number(cell)]
-        if commas and points:
-            return False
-        found |= bool(commas)
-    return found
 
 
 def numbers(

@@ -13,7 +13,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import numbers, pointed, uses_decimal_comma
+from navcore.io.cells import numbers
 from navcore.io.choices import column_choice
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import (
@@ -36,6 +36,7 @@ from navcore.io.columns import (
     table_recording,
 )
 from navcore.io.csv_times import timed, times_of_rows
+from navcore.io.decimal_signs import signs_of, signs_of_map
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
 from navcore.io.mapped_rows import mapped_layout, skip_bad
@@ -107,7 +108,7 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
         separator, header_line, header = mapped_layout(head_of_text(text), column_map)
         found = column_map.log_columns(where, header)
         clock = column_map.clocks(where, header)
-        rows = Rows(header, {stem: column for stem, (column, _) in found.items()}, decimal=column_map.decimal)
+        rows = Rows(header, {stem: column for stem, (column, _) in found.items()})
         rows.columns[UTC] = Column(clock[0], column_map.time.columns[0], UTC)
         rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign != 1.0}
         if pairs := pair_faults(where, rows.columns):
@@ -140,15 +141,25 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             rows.cells[UTC][-1] = " ".join(row[index].strip() for index in clock)
         for index in beside:
             rows.sides.setdefault(index, []).append(row[index])
-    if column_map is None and separator != "," and uses_decimal_comma(rows.cells.values()):
-        rows.decimal = ","
-        rows.warnings.append(Text("numbers have decimal commas"))
+    _tell_numerals(where, rows, column_map)
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
         rows.warnings.append(Text("the last row is cut off: left out"))
         faults = []
     if faults:
         raise InputError(limited(where, faults))
     return rows
+
+
+def _tell_numerals(where: str, rows: Rows, column_map: ColumnMap | None) -> None:
+    """Tell the decimal sign of the numbers, by all columns that are used; raises `InputError`."""
+    cells = {rows.columns[stem].name: column for stem, column in rows.cells.items()}
+    if column_map is not None:
+        stated = "decimal" in column_map.model_fields_set
+        rows.numerals = signs_of_map(column_map.decimal, stated, cells)
+        return
+    rows.numerals = signs_of(where, cells, rows.numbers)
+    if told := rows.numerals.told():
+        rows.warnings.append(told)
 
 
 def _refuse_size(where: str, text: str, columns: int) -> None:
@@ -222,7 +233,7 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
     numbered = [rows.numbers[i] for i in kept] if untimed else rows.numbers
     for stem in (stem for stem in QUANTITIES if stem in rows.columns):
         cells = [rows.cells[stem][i] for i in kept] if untimed else rows.cells[stem]
-        cells = pointed(cells, rows.decimal)
+        cells = rows.numerals.pointed(cells)
         try:
             values[stem], empty = numbers(where, rows.columns[stem].name.lower(), cells, numbered)
         except InputError as error:
@@ -296,7 +307,7 @@ def _choices(
     differing: list[str] = []
     for column in rows.others:
         taken = rows.columns[column.stem]
-        cells = pointed([rows.sides[column.index][i] for i in kept], rows.decimal)
+        cells = rows.numerals.pointed([rows.sides[column.index][i] for i in kept])
         try:
             found, empty = numbers(where, column.name, cells, numbered)
         except InputError:

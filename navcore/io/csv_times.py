@@ -7,7 +7,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import is_empty, numbers, pointed, times
+from navcore.io.cells import is_empty, numbers, times
 from navcore.io.column_map import GPS_WEEK, ColumnMap, TimeMap
 from navcore.io.column_names import (
     CLOCK,
@@ -45,9 +45,9 @@ def times_of_rows(
     column = clock_column(rows.columns)
     numbered = [rows.numbers[i] for i in kept]
     name = column.name.lower()
-    cells = pointed([rows.cells[column.stem][i] for i in kept], rows.decimal)
+    cells = rows.numerals.pointed([rows.cells[column.stem][i] for i in kept])
     if column_map is not None and column_map.time.stated:
-        clock = MappedClock(column_map.time, rows.decimal)
+        clock = MappedClock(column_map.time)
         time_s, dated = clock.read(where, cells, numbered)
         rows.warnings += clock.warnings()
         return time_s, dated, name

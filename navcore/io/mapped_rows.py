@@ -37,14 +37,14 @@ def mapped_layout(head: Sequence[str], column_map: ColumnMap) -> tuple[str, str,
 
 def skip_bad(rows: Rows, column_map: ColumnMap) -> None:
     """Leave out, in place, the rows with a time or number that cannot be read; say how many and which."""
-    clock = MappedClock(column_map.time, rows.decimal) if column_map.time.stated else None
+    clock = MappedClock(column_map.time) if column_map.time.stated else None
     bad: set[int] = set()
-    for stem, cells in rows.cells.items():
+    for stem, given in rows.cells.items():
+        cells = rows.numerals.pointed(given)
         if stem == UTC:
             bad |= {i for i, cell in enumerate(cells) if not _is_time(clock, cell)}
             continue
-        decimal = rows.decimal
-        bad |= {i for i, c in enumerate(cells) if not is_empty(c) and not is_number(c.replace(decimal, "."))}
+        bad |= {i for i, cell in enumerate(cells) if not is_empty(cell) and not is_number(cell)}
     skipped = sorted([*rows.skipped, *(rows.numbers[i] for i in bad)])
     for cells in (*rows.cells.values(), *rows.sides.values()):
         cells[:] = [cell for i, cell in enumerate(cells) if i not in bad]

@@ -4,6 +4,7 @@ import csv
 from dataclasses import dataclass, field
 
 from navcore.io.column_names import Column
+from navcore.io.decimal_signs import Signs
 from navcore.io.table_flags import TableFlag
 
 
@@ -30,7 +31,8 @@ class Rows:
     """Cells of columns that may hold a hemisphere."""
     heeded: set[int] = field(default_factory=set)
     """Those that do."""
-    decimal: str = "."
+    numerals: Signs = Signs()
+    """Decimal sign of the numbers, and the sign before groups of three digits."""
     signs: dict[str, float] = field(default_factory=dict)
     """Factors of the columns whose numbers a map turns around or scales."""
     skipped: list[int] = field(default_factory=list)

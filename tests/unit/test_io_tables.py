@@ -63,7 +63,7 @@ def test_a_zone_is_heeded_and_no_zone_means_utc(tmp_path):
         ("t_s,heading_deg,heading_deg\n1,2,3\n", ["'heading_deg': column given twice"]),
         ("t_s,heading_deg\n", ["a header but no rows"]),
         ("t_s,heading_deg\n0,1\n1,x\n2,\n", ["row 3: heading_deg = 'x': is not"]),
-        ("t_s;heading_deg\n0;1,5\n1;1.5\n", ["row 2: heading_deg = '1,5': is not a number (decimal comma?"]),
+        ("t_s;heading_deg\n0;1,5\n1;1.5\n", ["row 2: heading_deg = '1,5': has a decimal comma, and"]),
         ("t_s,heading_deg\n0,nan\n", ["row 2: heading_deg = nan: must be a number from -360 to 360"]),
         ("t_s,heading_deg\n0,inf\n", ["row 2: heading_deg = inf"]),
         ("t_s,lat_deg,lon_deg\n0,91,0\n", ["row 2: lat_deg = 91.0: must be a number from -90 to 90"]),
