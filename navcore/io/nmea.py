@@ -153,12 +153,23 @@ def _warnings(tally: Tally) -> list[str]:
                 first_bad_line=tally.first_bad_line,
             )
         )
-    if tally.unparsable:
+    if tally.senseless.total():
         words.append(
             Text(
                 "{unparsable} lines that are no sentence or make no sense left out{kinds}",
-                unparsable=tally.unparsable,
+                unparsable=tally.senseless.total(),
                 kinds=_counted(tally.senseless),
+            )
+        )
+    if tally.cut:
+        words.append(
+            Text.plural(
+                "{count} sentence that is cut off left out{kinds}: its checksum, or fields and checksum, are "
+                "missing",
+                "{count} sentences that are cut off left out{kinds}: their checksum, or fields and checksum, "
+                "are missing",
+                count=tally.cut.total(),
+                kinds=_counted(tally.cut),
             )
         )
     if tally.without_checksum:

@@ -34,12 +34,15 @@ class Fields:
     ----------
     count : ndarray of int, shape (n,)
         How many each sentence has.
+    proven : ndarray of bool, shape (n,)
+        Whether each has a checksum.
     """
 
     def __init__(self, sentences: Sentences, rows: np.ndarray, carried: dict[str, int]) -> None:
         self._sentences, self._rows, self.carried = sentences, rows, carried
         self._block, begins = sentences.block, sentences.rows["begin"][rows]
         self._ends = sentences.rows["end"][rows]
+        self.proven = sentences.rows["checksum"][rows] >= 0
         self._stops = np.append(self._block.commas, self._block.letters.size)
         self._first = np.searchsorted(self._block.commas, begins)
         self.count = np.searchsorted(self._block.commas, self._ends) - self._first

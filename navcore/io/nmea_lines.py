@@ -27,7 +27,7 @@ _CHECKSUM = re.compile(r"[0-9A-Fa-f]{2}")
 _SENTENCE_START = re.compile(r"[$!][A-Z]{2,9},")
 _SOURCE = re.compile(r"(?<![A-Za-z])[A-Za-z][A-Za-z_-]{1,30}\d{0,6}")
 _WEEKDAYS = frozenset(Text("mon tue wed thu fri sat sun").split())
-_QUOTES = " \t\"',;"
+_QUOTE = re.compile("[\"']")
 _LINES_LOOKED_AT = 20_000
 _BLOCK = 1 << 18
 """Characters of a block: as many lines as are worth an array, and few enough to bound the memory."""
@@ -42,6 +42,8 @@ class Tally:
     bad: Counter[str] = field(default_factory=Counter)
     senseless: Counter[str] = field(default_factory=Counter)
     """Lines that make no sense by their address; without one, those that are no sentence."""
+    cut: Counter[str] = field(default_factory=Counter)
+    """Sentences that are cut off: no whole checksum, or neither that nor all fields of their kind."""
     without_checksum: int = 0
     untimed: Counter[str] = field(default_factory=Counter)
     empty: Counter[str] = field(default_factory=Counter)
@@ -72,8 +74,8 @@ class Tally:
 
     @property
     def unparsable(self) -> int:
-        """Lines that are no sentence or make no sense."""
-        return self.senseless.total()
+        """Lines that are no sentence, make no sense or are cut off."""
+        return self.senseless.total() + self.cut.total()
 
     def count(self, counter: Counter[str], addresses: Iterable[str]) -> dict[str, str]:
         """Count addresses, each or as one of the many others; return what they were counted as."""
@@ -173,13 +175,15 @@ def _others(
     for line, (begin, end, plain, mark, star, checksum) in lines:
         if plain:
             before, sentences, after = text[begin:mark], [(mark + 1, star, checksum)], text[star + 3 : end]
+            cut: list[str] = []
         else:
             content = text[begin:end].lstrip()
             begin, content = end - len(content), content.rstrip()
             if not content or content[0] == "#":
                 continue
-            before, sentences, after = _split(content, begin)
-        tally.lines += max(1, len(sentences))
+            before, sentences, after, cut = _split(content, begin)
+            tally.count(tally.cut, cut)
+        tally.lines += max(1, len(sentences) + len(cut))
         stamp, rest = None, ""
         try:
             if before:
@@ -190,7 +194,7 @@ def _others(
             tally.count(tally.senseless, (text[begin : begin + 5] for begin, _, _ in sentences))
             sentences = []
         else:
-            tally.senseless[""] += not sentences
+            tally.senseless[""] += not sentences and not cut
         source = _source(rest) if rest else ""
         seconds, dated = stamp or (math.nan, True)
         for sentence in sentences:
@@ -206,36 +210,46 @@ def _first_start(line: str) -> int:
     return min(starts, default=-1)
 
 
-def _split(line: str, place: int) -> tuple[str, list[tuple[int, int, int]], str]:
+def _split(line: str, place: int) -> tuple[str, list[tuple[int, int, int]], str, list[str]]:
     """Text before, (begin, end, checksum) of each sentence of a line that stands at a place, text behind.
 
-    Of several sentences run together, one without a checksum was cut off and is left out.
+    The last value are the addresses of those that are cut off: within their checksum, or, of several
+    sentences run together, without one.
     """
     first = _first_start(line)
     if first < 0 or len(line) > LONGEST_LINE:
-        return "", [], ""
+        return "", [], "", []
     parts = re.split("[$!]", line[first:])[1:]
     begin, sentences, after = place + first + 1, list[tuple[int, int, int]](), ""
+    cut: list[str] = []
     for part in parts:
         found = _sentence(part, alone=len(parts) == 1)
         if found is not None:
             size, checksum, after = found
             sentences.append((begin, begin + size, checksum))
+        elif _address(part):
+            cut.append(_address(part))
         begin += 1 + len(part)
-    return (line[:first] if sentences else ""), sentences, after
+    return (line[:first] if sentences else ""), sentences, after, cut
 
 
 def _sentence(text: str, alone: bool) -> tuple[int, int, str] | None:
     """Length from the address to the checksum, checksum, and the text behind it; None without sense."""
-    address, comma, _ = text[:12].partition(",")
-    if not comma or _ADDRESS.fullmatch(address) is None:
+    if not _address(text):
         return None
     body, star, rest = text.partition("*")
     if not star:
-        return (len(body.rstrip(_QUOTES)), -1, "") if alone else None
+        # Commas at the end are empty fields, by which a whole sentence is told from one that is cut off.
+        return (len(_QUOTE.split(body, maxsplit=1)[0].rstrip(" \t;")), -1, "") if alone else None
     if _CHECKSUM.match(rest) is None:
         return None
     return len(body), int(rest[:2], 16), rest[2:]
+
+
+def _address(text: str) -> str:
+    """Address with which a text begins; empty where it does not."""
+    address, comma, _ = text[:12].partition(",")
+    return address if comma and _ADDRESS.fullmatch(address) else ""
 
 
 def _source(rest: str) -> str:

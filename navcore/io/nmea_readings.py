@@ -99,7 +99,10 @@ class Gathered:
         readings = decode(sentences, self._carried)
         sensible, invalid = readings.rows["sensible"], readings.rows["invalid"]
         if not sensible.all():
-            tally.count(tally.senseless, compress(addresses, ~sensible))
+            cut = readings.rows["cut"]
+            tally.count(tally.cut, compress(addresses, cut))
+            tally.without_checksum -= int(np.count_nonzero(cut))
+            tally.count(tally.senseless, compress(addresses, ~sensible & ~cut))
         tally.doubts.update(dict(sorted(readings.doubts.items())))
         tally.flagged.update(dict(sorted(readings.invalid.items())))
         names = tally.count(tally.intact, compress(addresses, sensible))

@@ -148,6 +148,8 @@ def _lines_left_out(log: NmeaLog) -> Iterator[LeftOut]:
     for kind, count in tally.senseless.items():
         if count:
             yield LeftOut(kind, "", Text("makes no sense") if kind else Text("is no sentence"), count)
+    for kind, count in tally.cut.items():
+        yield LeftOut(kind, "", Text("cut off"), count)
     for kind, count in tally.bad.items():
         yield LeftOut(kind, "", _CHECKSUM, count)
     lost = log.ordered.fates != USED

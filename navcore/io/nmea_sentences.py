@@ -24,16 +24,18 @@ READING = np.dtype(
     [
         ("used", bool),
         ("sensible", bool),
+        ("cut", bool),
         ("invalid", bool),
         ("role", np.int8),
         ("time_of_day", float),
         ("day", float),
     ]
 )
-"""Of a sentence: whether it is of a kind that is decoded; whether its fields make sense; whether the receiver
-calls the whole of it invalid (no quantity is filled in then); whether it is a reading (0), another message
-of its maker (`OTHER_MESSAGE`) or one that speaks of others (`ABOUT_OTHERS`); its own UTC, s after midnight,
-and UTC midnight of its own date, s since 1970; NaN without."""
+"""Of a sentence: whether it is of a kind that is decoded; whether its fields make sense; whether it is cut
+off (it makes no sense then); whether the receiver calls the whole of it invalid (no quantity is filled in
+then); whether it is a reading (0), another message of its maker (`OTHER_MESSAGE`) or one that speaks of
+others (`ABOUT_OTHERS`); its own UTC, s after midnight, and UTC midnight of its own date, s since 1970; NaN
+without."""
 
 
 ALONG_AXES = ("water", "ground")
@@ -261,9 +263,35 @@ KINDS = ", ".join((*sorted(_STANDARD), *_MAKERS))
 """Sentences that can be read, for messages."""
 
 
+_FEWEST = {
+    "GGA": (12,), "GLL": (6, 4), "GNS": (12,), "HDG": (5,), "HDT": (2,), "RMC": (9,), "THS": (2,),
+    "VBW": (10, 6), "VHW": (8,), "VTG": (8,), "ZDA": (6,),
+    "PRDID": (3,), "PSAT,HPR": (6,), "PSXN,20": (5,), "PSXN,23": (5,),
+}  # fmt: skip
+"""Fields that a kind has at least, and how many an older form has, the last one filled in. A checksum proves
+that a sentence is whole; one that has neither was cut off, as by a full buffer, perhaps within a number."""
+
+
+def _kind(address: str) -> str:
+    """Last letters of a standard address; the whole one of a maker's sentence."""
+    return address[2:] if len(address) == 5 and address[0] != "P" else address
+
+
 def _decoder(address: str) -> Decoder | None:
-    standard = len(address) == 5 and address[0] != "P"
-    return _STANDARD.get(address[2:]) if standard else _MAKERS.get(address)
+    return _STANDARD.get(_kind(address)) or _MAKERS.get(address)
+
+
+def _are_cut(kind: str, fields: Fields) -> np.ndarray:
+    """Which sentences of a kind have neither a checksum nor all of their fields."""
+    cut = np.zeros(fields.count.size, bool)
+    for name, (fewest, *older) in _FEWEST.items():
+        own, _, number = name.partition(",")
+        if own == kind:
+            short = ~fields.proven & (fields.count < fewest)
+            for count in older:
+                short &= (fields.count != count) | fields.are(count - 1, "")
+            cut |= short & fields.are(0, number) if number else short
+    return cut
 
 
 def is_used(address: str) -> bool:
@@ -273,16 +301,19 @@ def is_used(address: str) -> bool:
 
 def decode(sentences: Sentences, carried: dict[str, int] | None = None) -> Readings:
     """Readings of the sentences of used kinds; ``carried`` keeps flags from one block to the next."""
-    nothing = np.array((False, True, False, 0, math.nan, math.nan), READING)
+    nothing = np.array((False, True, False, False, 0, math.nan, math.nan), READING)
     readings = Readings(np.full(len(sentences.addresses), nothing), [], Counter(), Counter())
-    decoders = {address: _decoder(address) for address in set(sentences.addresses)}
-    rows_of: defaultdict[Decoder | None, list[int]] = defaultdict(list)
+    kinds = {address: _kind(address) for address in set(sentences.addresses) if is_used(address)}
+    rows_of: defaultdict[str, list[int]] = defaultdict(list)
     for row, address in enumerate(sentences.addresses):
-        rows_of[decoders[address]].append(row)
-    for decoder, rows in rows_of.items():
+        rows_of[kinds.get(address, "")].append(row)
+    for kind, rows in rows_of.items():
+        decoder = _STANDARD.get(kind) or _MAKERS.get(kind)
         if decoder is not None:
             fields = Fields(sentences, which := np.array(rows), {} if carried is None else carried)
-            _fill(readings, sentences.addresses, which, fields.count > 0, decoder(fields))
+            cut = _are_cut(kind, fields)
+            readings.rows["cut"][which] = cut
+            _fill(readings, sentences.addresses, which, (fields.count > 0) & ~cut, decoder(fields))
     return readings
 
 
