@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from tyro.conf import Positional, arg
 
 from navcore.foundation.answers import columns, number
+from navcore.foundation.units import UNITS
 from schuler_bench.cli.terminal import emit_result
 
 
@@ -74,6 +75,8 @@ def network_text(report: dict[str, Any]) -> list[str]:
         ["damping ratio", number(report["damping_ratio"]), ""],
         ["natural frequency", number(report["natural_frequency_rad_s"]), "rad/s"],
         ["settling (2 %)", *(("never", "") if settling is None else (number(settling), "s"))],
+        ["worst tilt", *_bound(report["worst_tilt_rad_per_mps"], UNITS["arcsec"], "arcsec")],
+        ["worst velocity error", *_bound(report["worst_velocity_per_mps"], 1.0, "m/s")],
     ]
     lines = [f"{report['id']} on the sphere, ωₛ = {omega_s:.6g} rad/s", "", *columns(rows), ""]
     for key, title in (("zeros", "zeros"), ("poles", "poles"), ("closed_loop_poles", "closed loop")):
@@ -82,6 +85,11 @@ def network_text(report: dict[str, Any]) -> list[str]:
     if "margins" in report:
         lines += ["", *_margins(report["margins"])]
     return lines + ([""] if report["warnings"] else []) + [f"warning: {text}" for text in report["warnings"]]
+
+
+def _bound(value: float | None, size: float, unit: str) -> tuple[str, str]:
+    """Write the largest error for a log within 1 m/s."""
+    return ("no bound", "") if value is None else (number(value / size), f"{unit}, log within 1 m/s")
 
 
 def _whole_system(report: dict[str, Any]) -> list[str]:

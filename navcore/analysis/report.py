@@ -9,6 +9,7 @@ import numpy as np
 from navcore.analysis import analyse, disk_margin, margins
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import WholeSystem, whole_system
+from navcore.analysis.worst_step import worst_step
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import DEG
@@ -58,6 +59,7 @@ def network_report(
         sampled = held_log(network, log_period_s, law_step_s, lat_deg * DEG, azimuth=slow)
         warnings += sampled.warnings
         growth = sampled.growth_per_s
+    worst = worst_step(network)
     return {
         "id": network.id,
         "num": [float(c) for c in network.num],
@@ -72,6 +74,8 @@ def network_report(
         "damping_ratio": _finite(loop.damping_ratio),
         "natural_frequency_rad_s": _finite(loop.natural_frequency),
         "settling_s": loop.settling_s,
+        "worst_tilt_rad_per_mps": worst.tilt_rad,
+        "worst_velocity_per_mps": worst.velocity_mps,
         "lat_deg": lat_deg,
         **whole_system_report(whole),
         "growth_per_s": _finite(growth),

@@ -115,11 +115,7 @@ def along(
     columns : tuple of Column, optional
         Of `navcore.design.constants.shared_columns`, which are the same for all methods.
     """
-    forms, stage = law_stages(method, scenario.omega_s, course)
-    course, stage = _with_stages(course, stage)
-    kind = method.kind
-    azimuth = azimuth_form(kind.azimuth(method, scenario.omega_s), kind.uses_log, course.step_s)
-    loops = [loop_of(scenario, form, course, model, azimuth) for form in forms]
+    course, stage, loops = staged_loops(scenario, method, course, model)
     loop = loops[-1]
     shared = shared_columns(scenario, course, model) if columns is None else columns
     with np.errstate(over="ignore", invalid="ignore"):  # an unstable loop: told by who reads the variances
@@ -137,6 +133,42 @@ def along(
             else:
                 variances[column.source] = variances.get(column.source, 0.0) + (response * scale) ** 2
     return Along(course.t_s, variances, given)
+
+
+def staged_loops(
+    scenario: Scenario, method: Method, course: Course, model: StochasticModel
+) -> tuple[Course, np.ndarray, list[LoopModel]]:
+    """Loops that a method closes one after the other along a course.
+
+    Parameters
+    ----------
+    scenario, method, course, model
+        As of `along`.
+
+    Returns
+    -------
+    course : Course
+        With intervals told apart by the loop too.
+    stage : ndarray of int, shape (g,)
+        Place in ``loops`` of each kind of interval.
+    loops : list of LoopModel
+    """
+    forms, stage = law_stages(method, scenario.omega_s, course)
+    course, stage = _with_stages(course, stage)
+    kind = method.kind
+    azimuth = azimuth_form(kind.azimuth(method, scenario.omega_s), kind.uses_log, course.step_s)
+    return course, stage, [loop_of(scenario, form, course, model, azimuth) for form in forms]
+
+
+def engaged_at(served: np.ndarray) -> np.ndarray:
+    """Mark the intervals at whose beginning the networks are cleared, shape (k,).
+
+    Parameters
+    ----------
+    served : ndarray of bool, shape (k,)
+        Whether each interval has what the law reads.
+    """
+    return served & ~np.concatenate([served[:1], served[:-1]])
 
 
 def _with_stages(course: Course, stage: np.ndarray) -> tuple[Course, np.ndarray]:
@@ -217,9 +249,7 @@ def _tables(loops: list[LoopModel], stage: np.ndarray, model: StochasticModel, c
     for k in (_LOG_WHITE, _LOG_DRIFT):  # a moored ship does not read its log
         Q[course.moored, k, :n, :] = 0.0
         Q[course.moored, k, :, :n] = 0.0
-    works = served[course.kind]
-    engaged = works & ~np.concatenate([works[:1], works[:-1]])
-    return _Tables(Phi, B, G, decay, Q, engaged)
+    return _Tables(Phi, B, G, decay, Q, engaged_at(served[course.kind]))
 
 
 def _random(loop: LoopModel, model: StochasticModel, course: Course, tables: _Tables) -> np.ndarray:

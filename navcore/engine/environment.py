@@ -51,7 +51,14 @@ class Environment:
     warnings: tuple[str, ...]
 
 
-def _start_utc(scenario: Scenario) -> float | None:
+def start_utc(scenario: Scenario) -> float | None:
+    """UTC of t = 0, s: begin of what everything recorded shares; None where nothing is recorded.
+
+    Raises
+    ------
+    InputError
+        As of `navcore.sensors.recorded.recorded_window`.
+    """
     window = recorded_window(scenario.motion, scenario.reference)
     return None if window is None else window.start_s
 
@@ -71,12 +78,12 @@ def truth_of(scenario: Scenario, steps: int, step_s: float) -> Truth:
     InputError
         The motion cannot be carried out, or a recording cannot serve the run.
     """
-    start_utc = _start_utc(scenario)
+    begin = start_utc(scenario)
 
     def make() -> Truth:
         site = scenario.site.site()
         try:
-            return scenario.motion.truth(2 * steps + 1, 0.5 * step_s, site, scenario.earth, start_utc)
+            return scenario.motion.truth(2 * steps + 1, 0.5 * step_s, site, scenario.earth, begin)
         except InputError as error:
             raise error.located("", "motion.") from None
 
@@ -187,7 +194,7 @@ def _reference(scenarios: Sequence[Scenario], truth: Truth, width: int) -> Refer
             seeds,
             width,
             step_s=one.run.step_s,
-            start_utc=_start_utc(one),
+            start_utc=start_utc(one),
         )
     except InputError as error:
         raise error.located("", "reference.") from None

@@ -17,6 +17,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.pareto:ParetoQuestion",
     "navcore.questions.adapt:AdaptQuestion",
     "navcore.questions.design:DesignQuestion",
+    "navcore.questions.worst:WorstQuestion",
     "navcore.questions.study:StudyQuestion",
     "navcore.questions.sweep:SweepQuestion",
     "navcore.questions.verify:VerifyQuestion",

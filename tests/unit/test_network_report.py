@@ -24,6 +24,8 @@ KEYS = [
     "damping_ratio",
     "natural_frequency_rad_s",
     "settling_s",
+    "worst_tilt_rad_per_mps",
+    "worst_velocity_per_mps",
     "lat_deg",
     "earth_mode_growth_per_s",
     "h_slope_s",
