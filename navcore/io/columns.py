@@ -20,6 +20,7 @@ from navcore.io.column_names import (
     plain_name,
 )
 from navcore.io.placeholders import AIS_NO_COURSE, not_available
+from navcore.io.radians import with_radians
 from navcore.io.series import LeftOut, Recording, Series, SourceReport, stream_report, tidy
 from navcore.io.table_times import Table, of_one_clock, order_faults, rate_faults
 
@@ -191,6 +192,8 @@ def table_recording(table: Table) -> Recording:
     faults = _range_faults(table) or order_faults(table) or rate_faults(table)
     if faults:
         raise InputError(faults)
+
+    table = with_radians(table)
 
     def series(what: str, *stems: str, optional: int = 0) -> Series | None:
         """Series of columns; the last ``optional`` ones may be absent (0 then)."""

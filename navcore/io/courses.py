@@ -44,7 +44,7 @@ def course_warnings(recording: Recording) -> list[str]:
     recording : Recording
         With positions or velocity under way; else nothing is said.
     """
-    legs, velocity = _track(recording.position), _velocity(recording.velocity)
+    legs, velocity = legs_of(recording.position), _velocity(recording.velocity)
     track = None if legs is None else _moving(legs, np.ones(legs.time_s.size, dtype=bool))
     words: list[str] = []
     if legs is not None and velocity is not None and recording.velocity is not None:
@@ -68,11 +68,11 @@ def under_way(recording: Recording) -> Way | None:
     way = _velocity(recording.velocity)
     if way is not None:
         return way
-    legs = _track(recording.position)
+    legs = legs_of(recording.position)
     return None if legs is None else _moving(legs, np.ones(legs.time_s.size, dtype=bool))
 
 
-def _track(position: Series | None) -> Way | None:
+def legs_of(position: Series | None) -> Way | None:
     """Velocity of legs of 10 s between positions that share none of the gaps, at any speed."""
     if position is None or position.time_s.size < _FEWEST:
         return None
@@ -124,10 +124,10 @@ def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: Way, most: fl
         return []
     near, close = beside
     told, course = angle[near], np.arctan2(way.east, way.north)[close]
-    off = _off(told, course)
+    off = angle_off(told, course)
     degrees, turned = np.rad2deg(angle % (2.0 * np.pi)), np.rad2deg(told % (2.0 * np.pi))
     radians = degrees.max() <= 2.0 * np.pi + 0.01
-    plainly_radians = radians and off > _NEAR and _off(turned, course) < 0.2 * off
+    plainly_radians = radians and off > _NEAR and angle_off(turned, course) < 0.2 * off
     if off <= most and not plainly_radians:
         return []
     slips = (
@@ -137,7 +137,7 @@ def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: Way, most: fl
         (Text("the opposite direction"), True, told + np.pi, course),
         (Text("east and north exchanged"), True, 0.5 * np.pi - told, course),
     )  # fmt: skip
-    likely = next((name for name, able, mended, to in slips if able and _off(mended, to) < _NEAR), "")
+    likely = next((name for name, able, mended, to in slips if able and angle_off(mended, to) < _NEAR), "")
     reason = likely or Text("a wrong unit, sign or zero")
     return [
         Text(
@@ -150,8 +150,8 @@ def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: Way, most: fl
     ]
 
 
-def _off(angle: np.ndarray, course: np.ndarray) -> float:
-    """Median size of the difference, rad."""
+def angle_off(angle: np.ndarray, course: np.ndarray) -> float:
+    """Median size of the difference of two angles, rad; arrays of shape (n,)."""
     return float(np.median(np.abs((angle - course + np.pi) % (2.0 * np.pi) - np.pi)))
 
 

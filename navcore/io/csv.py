@@ -278,6 +278,7 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
         ),
         lambda: (lambda found: np.array([found[number] for number in numbered]))(ids()),
         tuple(told),
+        column_map is not None,
     )
 
 

@@ -68,7 +68,19 @@ def read(path: Path) -> Recording:
             missing[stem] = empty
     warnings = (*content.warnings(), *_left_out(len(points) - len(timed)))
     return table_recording(
-        Table(where, "GPX track", columns, time_s, dated, "time", values, missing, rows, warnings)
+        Table(
+            where,
+            "GPX track",
+            columns,
+            time_s,
+            dated,
+            "time",
+            values,
+            missing,
+            rows,
+            warnings,
+            units_stated=True,
+        )
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from navcore.foundation.earth import WGS84
 from navcore.foundation.text import Text
-from navcore.foundation.units import KNOT
+from navcore.foundation.units import DEG, KNOT
 from navcore.io.series import Recording
 
 LARGEST_CURRENT_MPS = 1.5
@@ -16,9 +16,13 @@ LARGEST_SHARE = 0.3
 _SHORTEST_LEG_S = 10.0
 MOST_LEGS = 100_000
 """Of 10 s, 11 days; two fixes that lie years apart must not make millions."""
-_KNOT_SLIP = 0.06
+_STRONGEST_CURRENT_MPS = 5.0
+"""About 10 kn: no larger difference is a stream."""
+_KNOT_SLIP, _RADIAN_SLIP = 0.06, 0.4
 KNOT_SLIPS = {KNOT: Text("m/s taken for knots"), 1.0 / KNOT: Text("knots taken for m/s")}
 """By the speed that is told over the true one."""
+_RADIANS = {1.0 / DEG: Text("positions in radians")}
+"""By the speed through the water over that of the track; a stream is in it."""
 
 
 def speed_warnings(recording: Recording) -> list[str]:
@@ -43,12 +47,23 @@ def speed_warnings(recording: Recording) -> list[str]:
     if difference <= max(LARGEST_CURRENT_MPS, LARGEST_SHARE * max(through, ground)):
         return []
     ratio = through / ground if ground > 0.0 else np.inf
-    slip = slip_of(ratio, KNOT_SLIPS, _KNOT_SLIP)
+    slip = slip_of(ratio, KNOT_SLIPS, _KNOT_SLIP) or slip_of(ratio, _RADIANS, _RADIAN_SLIP)
     reason = (
         Text("the ratio {ratio:.2f} suggests {slip}", ratio=ratio, slip=slip)
         if slip
         else Text("a wrong unit or scale, or a log that fails")
     )
+    if difference > _STRONGEST_CURRENT_MPS:
+        return [
+            Text(
+                "the speed through the water (median {through:.1f} kn, {source}) is far from "
+                "the speed over ground ({ground:.1f} kn), farther than any stream: {reason}",
+                through=through / KNOT,
+                source=water.source,
+                ground=ground / KNOT,
+                reason=reason,
+            )
+        ]
     return [
         Text(
             "the speed through the water (median {through:.1f} kn, {source}) is far from "

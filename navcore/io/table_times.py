@@ -49,6 +49,8 @@ class Table:
         the columns that are used are compared.
     choices : tuple of str
         Which of several columns for one quantity is taken.
+    units_stated : bool
+        Whether a map or the format says in which units all columns are.
     """
 
     where: str
@@ -64,6 +66,7 @@ class Table:
     left_out: tuple[LeftOut, ...] = ()
     ids: Callable[[], np.ndarray] | None = None
     choices: tuple[str, ...] = ()
+    units_stated: bool = False
 
 
 def of_one_clock(table: Table) -> Table:

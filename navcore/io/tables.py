@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.cells import times
 from navcore.io.column_map import ColumnMap
-from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, names_unit
+from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column
 from navcore.io.columns import column_warnings, pair_faults, require_columns, table_recording
 from navcore.io.containers.base import LONGEST_TIME, Raw
 from navcore.io.containers.opening import is_container, open_container
@@ -45,9 +44,6 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
     places = {stem: column.index for stem, column in columns.items() if stem in QUANTITIES}
     clock = next(columns[stem] for stem in (UTC, UNIX, SECONDS) if stem in columns)
     raw = held.fetch(list(places.values()), clocks or [clock.index])
-    told: list[str] = []
-    if column_map is None and held.kind.startswith("MAT"):
-        columns, told = in_radians(columns, {stem: raw[place][0] for stem, place in places.items()})
     size = rows_of(path.name, raw)
     rows, notes = np.arange(1, size + 1), list[str]()
     if column_map is not None and column_map.time.stated:
@@ -56,33 +52,14 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
         time_s, dated = _timing(path.name, clock, raw[clock.index][0], rows, notes)
     values = {stem: raw[place][0].astype(float) * signs.get(stem, 1.0) for stem, place in places.items()}
     missing = {stem: raw[place][1] for stem, place in places.items() if raw[place][1].any()}
-    warnings = (*column_warnings(held.names, columns), *told, *notes)
+    warnings = (*column_warnings(held.names, columns), *notes)
+    stated = column_map is not None
     return table_recording(
         Table(
-            path.name, held.kind, columns, time_s, dated, clock.name.lower(), values, missing, rows, warnings
+            path.name, held.kind, columns, time_s, dated, clock.name.lower(), values, missing, rows, warnings,
+            units_stated=stated,
         )
-    )
-
-
-_ANGLES = {"lat": 0.5 * np.pi, "lon": 2.0 * np.pi, "heading": 2.0 * np.pi, "cog": 2.0 * np.pi}
-"""Angles that say which unit they are in, and their largest size in rad."""
-_OTHER_ANGLES = ("pitch", "roll")
-
-
-def in_radians(
-    columns: dict[str, Column], values: dict[str, np.ndarray]
-) -> tuple[dict[str, Column], list[str]]:
-    """Columns with the angles in rad, as MATLAB has them, where no name gives a unit and all values fit."""
-    bare = [stem for stem in (*_ANGLES, *_OTHER_ANGLES) if stem in columns and not names_unit(columns[stem])]
-    sized = [stem for stem in bare if stem in _ANGLES]
-    fitting = all(np.nanmax(np.abs(values[stem]), initial=0.0) <= _ANGLES[stem] + 0.01 for stem in sized)
-    if not {"lat", "lon"} <= set(sized) or not fitting:
-        return columns, []
-    told = Text(
-        "angles without a unit are taken as radians, which all values fit: {names}",
-        names=", ".join(columns[stem].name for stem in bare),
-    )
-    return columns | {stem: replace(columns[stem], unit="rad") for stem in bare}, [told]
+    )  # fmt: skip
 
 
 def rows_of(where: str, raw: dict[int, Raw]) -> int:
