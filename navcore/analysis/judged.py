@@ -10,6 +10,7 @@ import numpy as np
 from navcore.analysis.loop import Loop, closed_loop_poles
 from navcore.analysis.transfers import Output, Source, time_response
 from navcore.analysis.whole_system import WholeSystem
+from navcore.analysis.worst_step import WorstStep, worst_step
 from navcore.foundation.units import HOUR
 from navcore.networks.base import LinearNetwork
 
@@ -111,10 +112,17 @@ def _after_log_step(judged: JudgedLoop, output: Output) -> float:
     return 0.0 if judged.loop.stable and not judged.uses_log else max(-low, high)
 
 
+def _worst(judged: JudgedLoop) -> WorstStep:
+    """Largest errors for a log within 1 m/s."""
+    return worst_step(judged.network) if judged.uses_log else WorstStep(0.0, 0.0)
+
+
 _VALUES: dict[str, Callable[[JudgedLoop], float | None]] = {
     "settling_s": lambda judged: judged.loop.settling_s,
     "overshoot": lambda judged: _after_log_step(judged, "dv"),
     "log_tilt": lambda judged: _after_log_step(judged, "phi"),
+    "worst_tilt": lambda judged: _worst(judged).tilt_rad,
+    "worst_velocity": lambda judged: _worst(judged).velocity_mps,
     "tilt_overshoot": lambda judged: max(0.0, -_extremes(judged, "initial_tilt", "phi")[0]),
     "damping_ratio": lambda judged: judged.loop.damping_ratio,
     "h0": lambda judged: judged.network.h0,

@@ -5,6 +5,7 @@ magnitude, without an end of time.
 """
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -12,13 +13,14 @@ import numpy as np
 
 from navcore.analysis.loop import analyse
 from navcore.analysis.response import free_states, matrix_exponential
-from navcore.analysis.transfers import Output, normalised_transfer
+from navcore.analysis.transfers import Output, Transfer, normalised_transfer
 from navcore.networks.base import ComplexArray, LinearNetwork
-from navcore.networks.state_space import StateSpace, state_space
+from navcore.networks.state_space import StateSpace, state_spaces
 
-_STEP = 0.03
+_OUTPUTS: tuple[Output, Output] = ("phi", "dv")
+_STEP = 0.05
 """Step over the time constant of the fastest mode that is left."""
-_BLOCK = 256
+_BLOCK = 128
 _GONE = 1e-9
 """Size at which a mode counts as gone."""
 _MOST_BLOCKS = 2000
@@ -46,34 +48,36 @@ def worst_step(network: LinearNetwork) -> WorstStep:
     network : LinearNetwork
         H(s).
     """
-    loop = analyse(network)
-    if not loop.stable or loop.damping_ratio == 0.0:
-        return WorstStep(None, None)
-    return WorstStep(_variation(network, "phi"), _variation(network, "dv"))
+    tilt, velocity = (normalised_transfer(network, "dv_r", output) for output in _OUTPUTS)
+    if np.array_equal(tilt.poles, velocity.poles) and np.any(tilt.num):
+        return WorstStep(*_variations(network, (tilt, velocity)))
+    return WorstStep(*_variations(network, (tilt,)), *_variations(network, (velocity,)))
 
 
-def _variation(network: LinearNetwork, output: Output) -> float | None:
-    transfer = normalised_transfer(network, "dv_r", output)
-    if not np.any(transfer.num):
-        return 0.0
-    poles = transfer.poles.astype(np.complex128)
-    if np.max(poles.real, initial=-1.0) >= 0.0:
-        return None
-    return total_variation(state_space(transfer.scale * transfer.num, transfer.poles), poles)
+def _variations(network: LinearNetwork, transfers: tuple[Transfer, ...]) -> tuple[float | None, ...]:
+    """Total variations of transfers with the same poles."""
+    if not any(np.any(one.num) for one in transfers):
+        return (0.0,) * len(transfers)
+    own = transfers[0].poles
+    poles, loop = own.astype(np.complex128), analyse(network)
+    if not loop.stable or loop.damping_ratio == 0.0 or np.max(poles.real, initial=-1.0) >= 0.0:
+        return (None,) * len(transfers)
+    systems = state_spaces([one.scale * one.num for one in transfers], own)
+    return tuple(total_variations(systems, poles).tolist())
 
 
-def total_variation(system: StateSpace, poles: ComplexArray) -> float:
-    """Total variation of the step response of a system whose modes all decay.
+def total_variations(systems: Sequence[StateSpace], poles: ComplexArray) -> np.ndarray:
+    """Total variations of the step responses of systems whose modes all decay, shape of ``systems``.
 
     Parameters
     ----------
-    system : StateSpace
-        In normalised time.
+    systems : sequence of StateSpace
+        Of the same A and B, in normalised time.
     poles : ndarray of complex
-        Of the system.
+        Of the systems.
     """
-    total, tau = abs(float(system.D)), 0.0
-    state = system.B
+    total, tau = np.array([abs(float(one.D)) for one in systems]), 0.0
+    A, state, C = systems[0].A, systems[0].B, np.stack([one.C for one in systems], axis=1)
     for _ in range(_MOST_BLOCKS if len(state) else 0):
         left = poles[poles.real * tau > math.log(_GONE)]
         if not len(left):
@@ -84,8 +88,9 @@ def total_variation(system: StateSpace, poles: ComplexArray) -> float:
         if period:
             count = max(_BLOCK, math.ceil(period / step))
             step = period / count
-        states = free_states(matrix_exponential(system.A * step), state, count + 1)
-        added = float(np.sum(np.abs(states[:-1] @ (system.C @ _integral(system.A, step)))))
+        transition, integral = _over_step(A, step)
+        states = free_states(transition, state, count + 1)
+        added = np.abs(states[:-1] @ (integral.T @ C)).sum(axis=0)
         if period:
             return total + added / -math.expm1(-slowest * period)
         total, tau, state = total + added, tau + count * step, states[-1]
@@ -101,9 +106,10 @@ def _period_of_one(poles: ComplexArray) -> float:
     return 2.0 * math.pi / turn if turn > 0.1 * decay else 1.0 / decay
 
 
-def _integral(A: np.ndarray, step: float) -> np.ndarray:
-    """Integral of e^(A t) over a step, shape (n, n)."""
+def _over_step(A: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """e^(A t) after a step, and its integral over the step; shape (n, n) each."""
     n = len(A)
     both = np.zeros((2 * n, 2 * n))
     both[:n, :n], both[:n, n:] = A * step, np.eye(n) * step
-    return matrix_exponential(both)[:n, n:]
+    moved = matrix_exponential(both)
+    return moved[:n, :n], moved[:n, n:]

@@ -143,6 +143,26 @@ _ROWS = (
         Text("Largest tilt after a step of the log's error by 1 m/s; 0 for a method without log."),
     ),
     Quantity(
+        "worst_tilt",
+        {"loop": Text("worst tilt, log within 1 m/s")},
+        "rad",
+        "arcsec",
+        Text(
+            "Largest tilt of one channel that a log can cause whose error stays within 1 m/s, however it "
+            "changes; 0 for a method without log."
+        ),
+    ),
+    Quantity(
+        "worst_velocity",
+        {"loop": Text("worst velocity error, log within 1 m/s")},
+        "m/s",
+        "m/s",
+        Text(
+            "Largest velocity error of one channel that a log can cause whose error stays within 1 m/s, "
+            "however it changes; 0 for a method without log."
+        ),
+    ),
+    Quantity(
         "tilt_overshoot",
         {"loop": Text("tilt overshoot")},
         "",
@@ -322,6 +342,8 @@ LIMITED = (
     "h0_deviation",
     "h_slope_s",
     "log_tilt",
+    "worst_tilt",
+    "worst_velocity",
 )
 """Quantities of a ``[[requirement]]``."""
 

@@ -28,7 +28,8 @@ class Requirement(Parameters):
         help=Text(
             "What is limited. Largest tilt and velocity error: length of the vector; root mean squares of "
             "them: per axis. Of the setting, whatever from_h is: settling_s, growth_per_s, "
-            "tilt_overshoot (%), damping_ratio, h0_deviation, h_slope_s, log_tilt (arcsec)."
+            "tilt_overshoot (%), damping_ratio, h0_deviation, h_slope_s, log_tilt and worst_tilt "
+            "(arcsec), worst_velocity (m/s)."
         ),
     )
     at_most: float | None = number(

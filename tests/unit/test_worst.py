@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import linprog
 from scipy.sparse import eye, vstack
 
-from navcore import load, parse_network, run
+from navcore import load, parse_network, run, tune
 from navcore.analysis.report import network_report
 from navcore.analysis.transfers import time_response
 from navcore.analysis.worst_step import worst_step
@@ -153,9 +153,10 @@ def test_levels_are_reached_within_the_rate() -> None:
 
 
 def test_one_channel_has_no_bound_without_damping() -> None:
-    free = parse_network('id = "none"')
-    report = network_report(free)
-    assert report["worst_tilt_rad_per_mps"] is None and report["worst_velocity_per_mps"] is None
+    growing = network_report(parse_network('id = "custom", zeros = [0.5], poles = [-0.5], gain = -1.0'))
+    assert growing["worst_tilt_rad_per_mps"] is None and growing["worst_velocity_per_mps"] is None
+    free = network_report(parse_network('id = "none"'))
+    assert free["worst_tilt_rad_per_mps"] == free["worst_velocity_per_mps"] == 0.0
     lightly = parse_network('id = "unity2", zeta = 0.05, r = 1.01').transfer(SPHERE.schuler_frequency(0.0))
     time_s = np.linspace(0.0, 30.0 * 86400.0, 400_001)
     variation = np.abs(np.diff(time_response(lightly, "dv_r", "dv", time_s))).sum()
@@ -192,3 +193,14 @@ def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFix
     assert {*document["methods"][1]} >= {"name", "bound", "tilt_rad", "heading_rad", "velocity_mps", "lat_m"}
     written = sorted(path.name for path in out.iterdir())
     assert written == sorted(n for n in names_of(load("zha-fast")) if not n.startswith("1-free"))
+
+
+def test_a_limit_can_be_on_the_worst_case_and_tune_makes_it_small() -> None:
+    limit = {"quantity": "worst_tilt", "at_most": 60.0}
+    scenario = scenario_of(CLASSIC2, {"name": "free"}, requirement=[limit])
+    first, free = (one["requirements"][0] for one in run(scenario).document()["methods"])
+    assert first["value"] == pytest.approx(68.6, rel=2e-2) and not first["met"]
+    assert free["value"] == 0.0 and free["met"]
+    pole2 = scenario_of({**CLASSIC2, "network": {"id": "complementary", "zeta": 0.5, "eta": 0.5}})
+    found = tune(pole2, "worst_tilt", ["method.0.network.zeta=0.2:1"], confirm=False)
+    assert found.document()["objective"] < 0.999 * found.document()["before"]

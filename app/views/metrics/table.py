@@ -35,6 +35,17 @@ _OF_THE_DIFFERENCE = {"rms": Text("Δ rms"), "max_abs": Text("Δ max"), "final":
 _UNITS = (*((error, NAMED[error.kind.unit]) for error in ERRORS), (ERRORS[-1], NAMED["nmi"]))
 
 
+def _worst(value: float) -> str:
+    """Write the worst tilt, rad."""
+    unit = NAMED[QUANTITIES["worst_tilt"].shown]
+    return f"{number(value / unit.si, 3)} {unit.name}" if math.isfinite(value) else Text("no bound")
+
+
+_LOOP = {"damping_ratio": rounded, "settling_s": settling, "h0": number, "worst_tilt": _worst}
+_BEST = ("settling_s",)
+"""Of which the smallest is marked; not of the worst tilt, for a method without log has none."""
+
+
 @dataclass(frozen=True)
 class Row:
     """One line of the table.
@@ -167,15 +178,15 @@ def verdict(verification: Verification) -> str:
 def _loop_rows(run: Run) -> list[Row]:
     rows = [Row("run", "", tuple((m.status,) for m in run.methods))] if run.status != "ok" else []
     # How far H(0) is from 1 is what counts: three digits would hide it.
-    for key, text in (("damping_ratio", rounded), ("settling_s", settling), ("h0", number)):
+    for key, text in _LOOP.items():
         values = [measure(method, key) for method in run.methods]
         texts = [text(value) for value in values]
         if key == "settling_s":
             texts = [
                 t if m.loop.stable else Text("unstable") for m, t in zip(run.methods, texts, strict=True)
             ]
-        best = _best([[value] for value in values]) if key == "settling_s" else ()
         quantity = QUANTITIES[key]
+        best = _best([[value] for value in values]) if key in _BEST else ()
         cells = tuple((text,) for text in texts)
         rows.append(Row(quantity.label, "", cells, best=best, hint=quantity.help))
     return rows

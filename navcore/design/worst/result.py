@@ -12,7 +12,7 @@ import numpy as np
 from navcore.design.worst.logs import LogError
 from navcore.foundation.answers import Answer, Column, Table
 from navcore.foundation.text import Text
-from navcore.quantities import COMPONENTS, ERRORS
+from navcore.quantities import COMPONENTS, ERRORS, KINDS, POSITION, components
 
 Bound = Literal["exact", "found"]
 _KNOWN: dict[Bound, str] = {"exact": Text("exact"), "found": Text("found, not proven")}
@@ -54,20 +54,16 @@ class MethodWorst:
 
     def document(self) -> dict[str, Any]:
         """Entry of ``methods``; null where an error has no bound."""
-        phi_e, phi_n, phi_u, dve, dvn, lat, lon = (
-            value if math.isfinite(value) else None for value in self.largest.tolist()
-        )
-        return {
-            "name": self.name,
-            "bound": self.bound,
-            "tilt_rad": [phi_e, phi_n],
-            "heading_rad": phi_u,
-            "velocity_mps": [dve, dvn],
-            "lat_m": lat,
-            "lon_m": lon,
-            "status": "diverged" if self.diverged else "ok",
-            "runs": self.runs,
-        }
+        values = (value if math.isfinite(value) else None for value in self.largest.tolist())
+        by_name = dict(zip(COMPONENTS, values, strict=True))
+        found: dict[str, Any] = {"name": self.name, "bound": self.bound}
+        for kind in KINDS:
+            own = [by_name[name] for name in components(kind)]
+            if kind is POSITION:
+                found |= {name.removeprefix("d"): by_name[name] for name in components(kind)}
+            else:
+                found[kind.figure] = own if len(own) > 1 else own[0]
+        return found | {"status": "diverged" if self.diverged else "ok", "runs": self.runs}
 
 
 @dataclass(frozen=True, eq=False)
