@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from navcore.engine.run import Run
+from navcore.foundation.units import UNITS
 from navcore.quantities import QUANTITIES, limit_unit
 from navcore.scenario.file import scenario_hash
 from navcore.scenario.requirement import Requirement
@@ -17,7 +18,8 @@ def limits(**shown: float) -> tuple[Requirement, ...]:
 def _limit(key: str, value: float) -> Requirement:
     row = QUANTITIES[key]
     named = "at_least" if row.sense == ">=" else "at_most"
-    return Requirement.model_validate({"quantity": key, named: value * row.size / limit_unit(key)})
+    si = value * UNITS[row.limit_shown]
+    return Requirement.model_validate({"quantity": key, named: si / limit_unit(key)})
 
 
 def under(run: Run, **shown: float) -> Run:

@@ -1,43 +1,16 @@
-"""Text typed into a box: a number with a unit ("30 min" in hours), and lists of roots, numbers or rows.
+"""Text typed into a box: lists of roots, numbers or rows, and the unit of a label.
 
-Every number in them is read by `navcore.foundation.numbers`.
+Every number in them is read by `navcore.foundation.numbers`, one with a unit by
+`navcore.foundation.with_unit`.
 """
 
 import re
 from typing import Any
 
-from navcore.foundation.notation import unit_sign
-from navcore.foundation.numbers import MINUS, NotANumber, read_number, read_whole, unquoted
+from navcore.foundation.numbers import MINUS, NotANumber, read_number, unquoted
 from navcore.foundation.text import Text
-from navcore.foundation.units import (
-    ARCMIN,
-    ARCSEC,
-    DEG,
-    HOUR,
-    KNOT,
-    MICRO_G,
-    MINUTE,
-    NAUTICAL_MILE,
-    STANDARD_GRAVITY,
-)
+from navcore.foundation.with_unit import read_quoting
 
-_FAMILIES: tuple[dict[str, float], ...] = (
-    {"s": 1.0, "min": MINUTE, "h": HOUR, "d": 24.0 * HOUR},
-    {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6},
-    {"rad": 1.0, "mrad": 1e-3, "deg": DEG, "arcmin": ARCMIN, "arcsec": ARCSEC},
-    {"m": 1.0, "km": 1e3, "nmi": NAUTICAL_MILE},
-    {"rad/s": 1.0, "deg/s": DEG, "deg/h": DEG / HOUR},
-    {"m/s^2": 1.0, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY, "ug": MICRO_G},
-)
-"""Units that stand for each other, in SI."""
-_SPELLED = {
-    "°": "deg", "degrees": "deg", "′": "arcmin", "'": "arcmin", "″": "arcsec", '"': "arcsec",
-    "°/h": "deg/h", "°/s": "deg/s", "kt": "kn", "kts": "kn", "knots": "kn", "nm": "nmi",
-    "m/s2": "m/s^2", "m/s²": "m/s^2", "µg": "ug", "μg": "ug",
-    "sec": "s", "minutes": "min", "hours": "h", "days": "d",
-}  # fmt: skip
-_UNITS = sorted({*_SPELLED, *(unit for family in _FAMILIES for unit in family)}, key=len, reverse=True)
-_UNKNOWN_UNIT = re.compile(r"(.*[\d.,])\s*([^\d\s.,+-][^\d]*)", re.DOTALL)
 _HIDDEN = str.maketrans(",; \n", "\ue000\ue001\ue002\ue003")
 _SHOWN = str.maketrans("\ue000\ue001\ue002\ue003", ",; \n")
 """Stand for what separates where it does not: within brackets."""
@@ -56,68 +29,6 @@ def unit_of(label: str) -> str:
     """
     match = re.search(r"\(([^()]*)\)$", label)
     return "" if match is None else match[1]
-
-
-def read_typed(text: str, unit: str, *, whole: bool = False) -> float:
-    """Value of a typed number in a field's unit.
-
-    Parameters
-    ----------
-    text : str
-        "30 min", "2kn", "0,5", "2·10^-4 °/h"; without a unit it is in the field's.
-    unit : str
-        Of the field; empty for a plain number.
-    whole : bool
-        It must be a whole number, and is an `int`.
-
-    Raises
-    ------
-    NotANumber
-        A `ValueError` in words: no number, or a unit that does not fit.
-
-    Examples
-    --------
-    >>> read_typed("30 min", "h"), read_typed("2 kn", "kn"), read_typed("0,5", "")
-    (0.5, 2.0, 0.5)
-    """
-    number, given = _parted(unquoted(text.strip()))
-    mine = _SPELLED.get(unit, unit)
-    if given in ("", mine):
-        return _read(number, text, whole=whole)
-    family = next((units for units in _FAMILIES if mine in units), {mine: 1.0} if mine else {})
-    if given not in family:
-        _read(number, text)  # what is no number either is refused as such
-        if not family:
-            raise NotANumber(text, Text("must be a number without a unit"))
-        units = ", ".join(map(unit_sign, family))
-        raise NotANumber(text, Text("must be in one of {units}, not in {given!r}", units=units, given=given))
-    # Rounded to what a double holds safely: 30 min are 0.5 h, not 0.49999999999999994 h.
-    value = f"{_read(number, text) * family[given] / family[mine]:.14g}"
-    return read_whole(value) if whole else float(value)
-
-
-def _parted(text: str) -> tuple[str, str]:
-    """Return a number and its unit, as `_FAMILIES` spells it; the unit is empty where there is none."""
-    try:
-        read_number(text)
-    except NotANumber:
-        pass
-    else:
-        return text, ""
-    for unit in _UNITS:
-        number = text.removesuffix(unit).rstrip()
-        if number != text and number[-1:].isdecimal() | (number[-1:] in "⁰¹²³⁴⁵⁶⁷⁸⁹.)}"):
-            return number, _SPELLED.get(unit, unit)
-    unknown = _UNKNOWN_UNIT.fullmatch(text)
-    return (text, "") if unknown is None else (unknown[1], unknown[2].strip())
-
-
-def _read(number: str, text: str, *, whole: bool = False) -> float:
-    """Read a number; a fault quotes the whole text."""
-    try:
-        return read_whole(number) if whole else read_number(number)
-    except NotANumber as error:
-        raise NotANumber(text, error.allowed) from None
 
 
 def write_number(value: float) -> str:
@@ -159,7 +70,7 @@ def read_roots(text: str) -> list[Any]:
             both = inside.split(",") if inside.count(",") == 1 else _items(inside)
             if len(both) != 2:
                 raise NotANumber(part, Text("must be two numbers, [re, im]"))
-            roots.append([_read(number, part) for number in both])
+            roots.append([read_quoting(number, part) for number in both])
             continue
         roots.append(_root_of(part))
     return roots
@@ -173,8 +84,8 @@ def _root_of(part: str) -> Any:
         return read_number(part)
     sign = next((at for at in range(len(bare) - 2, -1, -1) if _begins(bare, at)), 0)
     re_part, im_part = bare[:sign], bare[sign:-1]
-    im = _read(f"{im_part}1" if im_part in ("", "+", *_MINUS) else im_part, part)
-    real = _read(re_part, part) if re_part else 0.0
+    im = read_quoting(f"{im_part}1" if im_part in ("", "+", *_MINUS) else im_part, part)
+    real = read_quoting(re_part, part) if re_part else 0.0
     return [real, im] if im else real
 
 
@@ -222,7 +133,7 @@ def read_pairs(text: str) -> list[list[float]]:
     for row in rows:
         if len(row) != 2:
             raise NotANumber(":".join(row), Text("must be two numbers with a colon between them"))
-    return [[_read(number, ":".join(row)) for number in row] for row in rows]
+    return [[read_quoting(number, ":".join(row)) for number in row] for row in rows]
 
 
 def write_pairs(rows: Any) -> str:

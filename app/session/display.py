@@ -19,7 +19,7 @@ from schuler_bench.plots.legend import State, after
 FIRST_TRANSFER = "phi/dv_r"
 OBJECTIVES = ("tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s")
 """Quantities for which the page tunes a method."""
-SWEPT = tuple(key for key in LIMITED if QUANTITIES[key].kind is not None)
+SWEPT = tuple(key for key in LIMITED if QUANTITIES[key].kind is not None and "run" in QUANTITIES[key].names)
 """Quantities of a run that are swept."""
 AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
 """Quantities on the axes of the Pareto fronts."""

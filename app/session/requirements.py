@@ -3,10 +3,13 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
-from navcore.engine.measures import begins_s, judged, measure
+from navcore.engine.measures import measure, needs_seeds, verdict
 from navcore.engine.run import MethodRun, Run
-from navcore.quantities import ERRORS, POSITION, QUANTITIES, Quantity, limit_unit
+from navcore.engine.verdicts import Judgement
+from navcore.engine.verdicts import Verdict as Word
+from navcore.quantities import ERRORS, POSITION, QUANTITIES, Quantity, value_unit
 from navcore.scenario.requirement import Requirement
 from schuler_bench.editing.limits import BOXES, shown_limit
 
@@ -27,14 +30,22 @@ class Verdict:
         None: nothing is asked, the measured values stand alone.
     measured : tuple of float
         A value a method, in the unit in which the quantity is shown; infinite where there is none.
-    passed : tuple of bool
-        Whether each method meets it; True without a limit.
+    words : tuple of "met", "missed", "open" or ""
+        What each method makes of it; "" without a limit.
+    judgements : tuple of Judgement or None
+        What seeds say of each method.
     """
 
     quantity: Quantity
     requirement: Requirement | None
     measured: tuple[float, ...]
-    passed: tuple[bool, ...]
+    words: tuple[Literal[Word, ""], ...]
+    judgements: tuple[Judgement | None, ...]
+
+    @property
+    def passed(self) -> tuple[bool, ...]:
+        """Whether each method meets it; True without a limit."""
+        return tuple(word in ("met", "") for word in self.words)
 
     @property
     def limit(self) -> float | None:
@@ -42,35 +53,47 @@ class Verdict:
         return None if self.requirement is None else shown_limit(self.requirement)
 
 
-def verdicts(run: Run, requirements: Sequence[Requirement]) -> tuple[Verdict, ...]:
+Said = Sequence[Sequence[Judgement] | None]
+"""What seeds say of the limits of each method, in the scenario's order; None where nothing is known."""
+
+
+def verdicts(run: Run, requirements: Sequence[Requirement], said: Said = ()) -> tuple[Verdict, ...]:
     """Judge every method by every limit in order, then measure what has no limit."""
     limited = {one.quantity for one in requirements}
     rest = (_measured(run, QUANTITIES[key]) for key in BOXES if key not in limited)
-    return *asked(run, requirements), *rest
+    return *asked(run, requirements, said), *rest
 
 
-def asked(run: Run, requirements: Sequence[Requirement]) -> tuple[Verdict, ...]:
+def asked(run: Run, requirements: Sequence[Requirement], said: Said = ()) -> tuple[Verdict, ...]:
     """Judge every method by every limit, in order."""
-    return tuple(_limited(run, one) for one in requirements)
+    columns = [*said, *(None for _ in run.methods[len(said) :])]
+    return tuple(
+        _limited(run, one, [column[place] if column and place < len(column) else None for column in columns])
+        for place, one in enumerate(requirements)
+    )
 
 
-def _limited(run: Run, one: Requirement) -> Verdict:
-    found = [_judged(one, method) for method in run.methods]
-    unit = limit_unit(one.quantity) / QUANTITIES[one.quantity].size
+def _limited(run: Run, one: Requirement, said: Sequence[Judgement | None]) -> Verdict:
+    found = [_judged(one, method, seeds) for method, seeds in zip(run.methods, said, strict=True)]
+    unit = value_unit(one.quantity) / QUANTITIES[one.quantity].size
     values = tuple(math.inf if value is None else value * unit for value, _ in found)
-    return Verdict(QUANTITIES[one.quantity], one, values, tuple(met for _, met in found))
+    return Verdict(QUANTITIES[one.quantity], one, values, tuple(word for _, word in found), tuple(said))
 
 
-def _judged(one: Requirement, method: MethodRun) -> tuple[float | None, bool]:
+def _judged(one: Requirement, method: MethodRun, said: Judgement | None) -> tuple[float | None, Word]:
     """Judge a method; a pinned run was not watched from the beginning of a limit that came later."""
-    watched = any(-1e-6 < span.from_s - begins_s(one) < _WATCHED_S for span in method.spans)
-    of_errors = QUANTITIES[one.quantity].statistic in ("rms", "max_abs")
-    return judged(one, method) if watched or not of_errors else (None, False)
+    begins = 0.0 if math.isinf(one.begins_s) else one.begins_s
+    alike = (span for span in method.spans if math.isclose(span.bound_m, one.bound_m))
+    watched = any(-1e-6 < span.from_s - begins < _WATCHED_S for span in alike)
+    of_errors = QUANTITIES[one.quantity].kind is not None
+    if watched or not of_errors or said is not None:
+        return verdict(one, method, said)
+    return None, "open" if needs_seeds(one) else "missed"
 
 
 def _measured(run: Run, row: Quantity) -> Verdict:
     values = tuple(measure(method, row.key) / row.size for method in run.methods)
-    return Verdict(row, None, values, (True,) * len(values))
+    return Verdict(row, None, values, ("",) * len(values), (None,) * len(values))
 
 
 def limits_of(requirements: Sequence[Requirement]) -> dict[str, float]:
@@ -84,6 +107,8 @@ def limits_of(requirements: Sequence[Requirement]) -> dict[str, float]:
 
 def _drawn(row: Quantity) -> bool:
     """Whether curves have a line for a limit: of a largest value, and of the position's root mean square."""
+    if row.over or row.axes in ("seclat", "roll", "pitch"):
+        return False
     return row.statistic == "max_abs" or (row.statistic == "rms" and row.kind is POSITION)
 
 

@@ -306,12 +306,13 @@ def window_of(run: Run, display: Display) -> Window:
 
 
 def _measured(run: Run, from_s: float, to_s: float) -> Run:
-    return replace(run, methods=tuple(_method(method, from_s, to_s) for method in run.methods))
+    return replace(run, methods=tuple(_method(method, run.truth, from_s, to_s) for method in run.methods))
 
 
-def _method(method: MethodRun, from_s: float, to_s: float) -> MethodRun:
+def _method(method: MethodRun, truth: np.ndarray, from_s: float, to_s: float) -> MethodRun:
     """Statistics on the output rows; the largest magnitude on the curves too, which keep every extreme."""
-    rows = method.rows[(method.t_s >= from_s) & (method.t_s <= to_s), : len(NAMES)]
+    inside = (method.t_s >= from_s) & (method.t_s <= to_s)
+    rows = method.rows[inside, : len(NAMES)]
     drawn = method.plot.values[(method.plot.t_s >= from_s) & (method.plot.t_s <= to_s)]
     if not len(rows):
         empty = dict.fromkeys(("mean", "std", "rms", "max_abs", "final"), float("nan"))
@@ -329,5 +330,5 @@ def _method(method: MethodRun, from_s: float, to_s: float) -> MethodRun:
             }
             for i, name in enumerate(NAMES)
         },
-        spans=(span_of(rows),),
+        spans=(span_of(method.t_s[inside], rows, truth[: len(inside)][inside]),),
     )

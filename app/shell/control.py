@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, suppress
 from typing import TYPE_CHECKING, Any
 
+from navcore.foundation.with_unit import read_with_unit
 from schuler_bench.bridge.boxes import LIST, mark_number_box
 from schuler_bench.bridge.controls import id_of, set_slider_range
 from schuler_bench.bridge.mends import plain_viser
@@ -179,7 +180,7 @@ class Control:
         """Value of the field from what its box holds; raises ValueError for text that cannot be read."""
         kind = self.spec.kind
         if kind in _NUMBERS and isinstance(entered, str):
-            return typed.read_typed(entered, typed.unit_of(self.spec.label), whole=kind == "integer")
+            return read_with_unit(entered, typed.unit_of(self.spec.label), whole=kind == "integer")
         return _TEXTS[kind][0](entered) if kind in _TEXTS else entered
 
     @property

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 from navcore.foundation.errors import Fault
 from navcore.foundation.numbers import NotANumber
 from navcore.foundation.text import Text
+from navcore.foundation.with_unit import read_with_unit
 from schuler_bench.bridge.boxes import mark_number_box
-from schuler_bench.editing.typed import read_typed, unit_of, write_number
+from schuler_bench.editing.typed import unit_of, write_number
 from schuler_bench.shell import notices
 from schuler_bench.shell.control import Widget
 
@@ -78,7 +79,7 @@ class NumberBox:
     def _take(self) -> None:
         entered = self._box.take()
         try:
-            value = read_typed(entered, unit_of(self._label), whole=self._whole)
+            value = read_with_unit(entered, unit_of(self._label), whole=self._whole)
         except NotANumber as error:
             kept = write_number(self.value)
             line = notices.refusal(Fault("", "", entered, error.allowed), kept, typed=True)

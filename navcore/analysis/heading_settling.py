@@ -5,14 +5,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from navcore.analysis.whole_matrix import PHI_U, system_matrix
+from navcore.analysis.whole_matrix import DV_N, PHI_E, PHI_U, system_matrix
 from navcore.foundation.earth import SPHERE, Earth
-from navcore.foundation.units import HOUR
-from navcore.networks.azimuth_loop import AzimuthChannel
+from navcore.foundation.units import DEG, HOUR
+from navcore.networks.azimuth_loop import AzimuthChannel, AzimuthGains
 from navcore.networks.base import LinearNetwork
 
-_LEFT = 0.02
-_STEP_S, _LONGEST_S = 300.0, 1000.0 * HOUR
+BAND = 0.7 * DEG
+"""Within which a gyrocompass has settled (ISO 8728, IMO A.821(19) 4.1), rad."""
+START = 15.0 * DEG
+"""Initial heading error from which it settles, rad."""
+_POINTS, _LONGEST_S = 20_000, 1000.0 * HOUR
+_GROWS = 1e-6
+"""Real part from which a mode counts as one that grows, of the Schuler frequency."""
 
 
 @lru_cache(maxsize=512)
@@ -22,8 +27,13 @@ def heading_settling(
     earth: Earth = SPHERE,
     height: float = 0.0,
     azimuth: AzimuthChannel | None = None,
+    band: float = BAND,
 ) -> float:
-    """Last time at which the heading after an initial heading error exceeds 2 % of it, s.
+    """Last time at which the heading leaves its band around what it settles at, s.
+
+    It begins `START` wrong, all other errors at 0. A gyrocompass settles by its own loop: north velocity,
+    tilt about east, heading and the rate that turns the platform. An azimuth network damps the 24 h mode, so
+    that all states of the whole system count.
 
     Parameters
     ----------
@@ -37,24 +47,38 @@ def heading_settling(
         m.
     azimuth : LinearNetwork or AzimuthGains, optional
         Y(s) or the gyrocompass of the azimuth channel.
+    band : float
+        Half its width, rad.
 
     Returns
     -------
     float
-        To five minutes; infinite without an azimuth loop, where a mode grows, or beyond a thousand hours.
+        Infinite without an azimuth loop, where a mode grows, or beyond a thousand hours.
     """
     if azimuth is None:
         return math.inf
-    values, vectors = np.linalg.eig(system_matrix(network, lat, earth, height, azimuth))
-    if float(np.max(np.real(values))) > 1e-6:
+    matrix, heading = system_matrix(network, lat, earth, height, azimuth), PHI_U
+    if isinstance(azimuth, AzimuthGains):
+        own = [DV_N, PHI_E, PHI_U, len(matrix) - 1]
+        matrix, heading = matrix[np.ix_(own, own)], own.index(PHI_U)
+    values, vectors = np.linalg.eig(matrix)
+    slowest = -float(np.max(np.real(values)))
+    if slowest < -_GROWS:
         return math.inf
     start = np.zeros(len(values))
-    start[PHI_U] = 1.0
-    parts = np.linalg.lstsq(vectors, start, rcond=None)[0] * vectors[PHI_U]
-    times = np.arange(0.0, _LONGEST_S, _STEP_S)
-    heading = np.real(np.exp(np.outer(times * network.omega_s, values)) @ parts)
-    outside = np.flatnonzero(np.abs(heading) > _LEFT)
+    start[heading] = START
+    parts = np.linalg.lstsq(vectors, start, rcond=None)[0] * vectors[heading]
+
+    def error(times_s: np.ndarray) -> np.ndarray:
+        return np.real(np.exp(np.outer(times_s * network.omega_s, values)) @ parts)
+
+    gone = math.log(float(np.sum(np.abs(parts))) / band) / max(slowest, 1e-12) / network.omega_s
+    times = np.linspace(0.0, min(max(gone, HOUR), _LONGEST_S), _POINTS)
+    outside = np.flatnonzero(np.abs(error(times)) > band)
     if len(outside) == 0:
         return 0.0
     last = int(outside[-1])
-    return math.inf if last == len(times) - 1 else float(times[last] + _STEP_S)
+    if last == _POINTS - 1:
+        return math.inf
+    fine = np.linspace(times[last], times[last + 1], 100)
+    return float(fine[np.flatnonzero(np.abs(error(fine)) > band)[-1]])

@@ -39,6 +39,8 @@ class JudgedLoop(NamedTuple):
         Returns both channels with heading and latitude at the site; None where nothing of them is asked.
     growth : callable or None
         Returns the growth of the whole system as its law is sampled, 1/s; None where there is none.
+    heading_settling : callable or None
+        Returns how long the heading takes to settle, s; infinite where nothing holds it.
     """
 
     network: LinearNetwork
@@ -46,6 +48,7 @@ class JudgedLoop(NamedTuple):
     uses_log: bool
     whole: Callable[[], WholeSystem] | None = None
     growth: Callable[[], float | None] | None = None
+    heading_settling: Callable[[], float] | None = None
 
 
 def loop_value(key: str, judged: JudgedLoop) -> float:
@@ -130,4 +133,5 @@ _VALUES: dict[str, Callable[[JudgedLoop], float | None]] = {
     "h_slope_s": lambda judged: judged.network.h_slope,
     "earth_mode_growth_per_s": lambda judged: judged.whole().earth_growth if judged.whole else None,
     "growth_per_s": lambda judged: judged.growth() if judged.growth else None,
+    "heading_settling_s": lambda judged: judged.heading_settling() if judged.heading_settling else None,
 }

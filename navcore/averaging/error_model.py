@@ -171,9 +171,9 @@ def start_error_model(
     runs = tuple(
         ErrorModelRun(
             step_s, steps, along, sensors, _no_reference(), law, states[list(group)].mean(axis=0),
-            make_recorder(steps, step_s, output_step_s),
+            make_recorder(steps, step_s, output_step_s, along.axes),
         )
         for group in groups
     )  # fmt: skip
-    recorder = runs[0].recorder if len(runs) == 1 else make_recorder(steps, step_s, output_step_s)
+    recorder = runs[0].recorder if len(runs) == 1 else make_recorder(steps, step_s, output_step_s, along.axes)
     return AveragedErrorModel(runs, recorder)

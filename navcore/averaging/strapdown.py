@@ -14,7 +14,7 @@ from navcore.averaging.plan import Plan
 from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import Earth
 from navcore.law.law import Law
-from navcore.mechanization.recorder import PHI_E, PHI_U, Recorder, make_recorder
+from navcore.mechanization.recorder import PHI_E, PHI_U, Recorder, axes_along, make_recorder
 from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.attitude import angles_of, quaternion_of
 from navcore.mechanization.strapdown.run import Settings, Start, StrapdownRun, start_run
@@ -232,6 +232,6 @@ def start_strapdown(
         for begin in starts_ahead(start, plan.copies.ahead_s, plan.forecast, truth[:1], earth, law)
     )
     records = settings.samples // settings.record_every
-    recorder = make_recorder(records, settings.record_step_s, settings.output_step_s)
+    recorder = make_recorder(records, settings.record_step_s, settings.output_step_s, axes_along(truth))
     navigation = np.zeros((len(recorder.row_steps), len(at.NAVIGATION)))
     return AveragedStrapdown(plan.copies, runs, recorder, navigation)

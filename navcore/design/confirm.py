@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from navcore.engine.ensemble import Outcome, outcomes
-from navcore.engine.measures import begins_s, run_value
+from navcore.engine.measures import run_value, without_value
 from navcore.foundation.answers import number
 from navcore.foundation.errors import Fault, UnstableError
 from navcore.foundation.text import Text
-from navcore.quantities import KINDS, QUANTITIES, limit_unit
+from navcore.quantities import KINDS, QUANTITIES, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
@@ -151,8 +151,8 @@ def confirmed(
         changes[name] = _change([[_value(one, name, 0.0) for one in pair] for pair in found])
     for one in scenario.requirement:
         if one.quantity not in OF_THE_SETTING:
-            begins, unit = begins_s(one), limit_unit(one.quantity)
-            pairs = [[_value(each, one.quantity, begins) / unit for each in pair] for pair in found]
+            watch, unit = (one.begins_s, one.bound_m), value_unit(one.quantity)
+            pairs = [[_value(each, one.quantity, *watch) / unit for each in pair] for pair in found]
             changes[one.quantity] = _change(pairs)
     return Confirmed(seeds, changes, _objective(found, terms))
 
@@ -168,10 +168,10 @@ def _objective(found: Sequence[tuple[Outcome, ...]], terms: Sequence[tuple[str, 
     return _change(total.tolist())
 
 
-def _value(outcome: Outcome, name: str, from_s: float) -> float:
+def _value(outcome: Outcome, name: str, from_s: float, bound_m: float = math.inf) -> float:
     if not outcome.ended:
-        return math.inf
-    return run_value(QUANTITIES[name], outcome.spans, outcome.final_m, from_s)
+        return without_value(QUANTITIES[name])
+    return run_value(QUANTITIES[name], outcome.spans, outcome.final_m, from_s, bound_m)
 
 
 def _change(pairs: list[list[float]]) -> Change:

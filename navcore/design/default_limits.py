@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from navcore.design.measures import Objective, Requirement, Setting, read_requirement
 from navcore.foundation.errors import Fault, InputError
@@ -25,19 +24,6 @@ _NO_LONGER, _AT_LEAST_S = 2.0, 4.0 * HOUR
 """Times that the heading may take longer to settle than it does now, and how long it may take in any case."""
 
 
-@dataclass(frozen=True)
-class HeadingSettling(Requirement):
-    """Limit on the settling of the heading, of a method whose azimuth loop holds it."""
-
-    def excess(self, setting: Setting) -> float:
-        """By how much it is missed, relative to the limit; 0 when it is met."""
-        return max(0.0, setting.heading_settling_s / self.limit - 1.0)
-
-    def active(self, setting: Setting) -> bool:
-        """Whether a setting stands at the limit, to 1 %."""
-        return abs(setting.heading_settling_s / self.limit - 1.0) <= 0.01
-
-
 def heading_limit(settings: Sequence[Setting]) -> list[Requirement]:
     """Limit the heading's settling to twice what it is, where an azimuth loop holds it; else nothing.
 
@@ -50,8 +36,9 @@ def heading_limit(settings: Sequence[Setting]) -> list[Requirement]:
     if not math.isfinite(now):
         return []
     limit = max(_NO_LONGER * now, _AT_LEAST_S)
-    text = Text("heading_settling_s<={hours:.3g}h", hours=limit / HOUR, limited="settling_s", si=limit)
-    return [HeadingSettling(text, "settling_s", "<=", limit)]
+    name = "heading_settling_s"
+    text = Text("heading_settling_s<={hours:.3g}h", hours=limit / HOUR, limited=name, si=limit)
+    return [Requirement(text, name, "<=", limit)]
 
 
 def own_limits(requirements: Sequence[Limit], given: Sequence[Requirement]) -> list[Requirement]:

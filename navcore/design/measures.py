@@ -162,7 +162,8 @@ def measure(setting: Setting, key: str) -> float:
 def _judged(setting: Setting) -> JudgedLoop:
     uses_log = setting.method.kind.referenced
     whole, growth = lambda: setting.whole, lambda: setting.growth_per_s
-    return JudgedLoop(setting.network, setting.loop, uses_log, whole, growth)
+    heading = lambda: setting.heading_settling_s  # noqa: E731
+    return JudgedLoop(setting.network, setting.loop, uses_log, whole, growth, heading)
 
 
 def over_run(keys: Iterable[str]) -> bool:

@@ -19,7 +19,6 @@ from navcore.design.ship import Ship
 from navcore.design.stated import fields_of_sources
 from navcore.design.tuned_designs import foretold
 from navcore.engine.ensemble import outcomes
-from navcore.engine.measures import begins_s
 from navcore.quantities import QUANTITIES
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -247,10 +246,9 @@ class _Runs:
 
             def by_covariance(limit: Limit, factor: float) -> float:
                 what = QUANTITIES[limit.requirement.quantity], one.t_s
-                begins = begins_s(limit.requirement)
-                now = foretold(*what, one.total, begins)
+                now = foretold(*what, one.total, limit.requirement)
                 better = one.scaled(dict.fromkeys(sources, 1.0 / factor))
-                return foretold(*what, better, begins) / now if now else 1.0
+                return foretold(*what, better, limit.requirement) / now if now else 1.0
 
             return by_covariance
         best, now = self.judged(share.method, figures, MOST), self.judged(share.method, figures, 1.0)

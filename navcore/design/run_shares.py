@@ -3,24 +3,35 @@
 from collections.abc import Callable
 
 from navcore.design.measures import TUNING_INTERVALS
-from navcore.design.shares import Share, require_limits, shares_of, wilson
+from navcore.design.shares import Share, require_limits, shares_of
 from navcore.design.ship import Ship
 from navcore.engine.ensemble import outcomes
-from navcore.engine.measures import SeedShare
+from navcore.engine.load import estimated_seconds
+from navcore.engine.measures import SeedShare, needs_seeds
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import given_deviations
 
-SEEDS = 24
+SEEDS, MOST_SEEDS = 24, 200
+_LONGEST_S = 120.0
+"""Processor time that the seeds of all methods may take."""
 
 
 def draws_more_than_a_run(scenario: Scenario) -> bool:
-    """Whether a scenario has limits, and gives standard deviations that one run does not draw by."""
-    return bool(scenario.requirement and scenario.method and given_deviations(scenario))
+    """Whether seeds say more of the limits than a run: these ask for them, or deviations are given."""
+    limits = scenario.requirement
+    return bool(limits and scenario.method and (given_deviations(scenario) or any(map(needs_seeds, limits))))
+
+
+def seeds_for(scenario: Scenario) -> int:
+    """Seeds of `run_shares`: as many as of a design where a limit asks for them, fewer if runs are long."""
+    if not any(map(needs_seeds, scenario.requirement)):
+        return SEEDS
+    return max(SEEDS, min(MOST_SEEDS, int(_LONGEST_S / max(estimated_seconds(scenario), 1e-3))))
 
 
 def run_shares(
     scenario: Scenario,
-    seeds: int = SEEDS,
+    seeds: int | None = None,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> tuple[SeedShare, ...]:
@@ -30,8 +41,8 @@ def run_shares(
     ----------
     scenario : Scenario
         With limits.
-    seeds : int
-        Runs of each method: the first seeds of a design.
+    seeds : int, optional
+        Runs of each method: the first seeds of a design; by default `seeds_for` the scenario.
     progress, cancelled : callable, optional
         As of `navcore.engine.ensemble.outcomes`.
 
@@ -46,6 +57,7 @@ def run_shares(
         There is a limit that a run cannot be judged by, or a seed that cannot be run.
     """
     require_limits(scenario)
+    seeds = seeds_for(scenario) if seeds is None else seeds
     found = outcomes(scenario, scenario.method, range(seeds), progress, cancelled)
     if len(found) < seeds:
         return ()
@@ -54,5 +66,5 @@ def run_shares(
 
 
 def _shown(share: Share, seeds: int) -> SeedShare:
-    limits = tuple((one.met, wilson(round(one.met * seeds), seeds)) for one in share.limits)
+    limits = tuple(one.judgement for one in share.limits)
     return SeedShare(seeds, share.met, (share.low, share.high), limits)

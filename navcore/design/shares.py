@@ -1,6 +1,5 @@
 """Share of seeds on which a method meets all limits of a scenario (design.md, from limits to designs)."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,17 +9,15 @@ import numpy as np
 from navcore.design.measures import Setting, measure
 from navcore.design.ship import Ship
 from navcore.engine.ensemble import Outcome
-from navcore.engine.measures import begins_s, run_value
+from navcore.engine.measures import finite, limit_document, run_value, without_value
+from navcore.engine.verdicts import Judgement, judge, wilson
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.quantities import HEADING, QUANTITIES, limit_unit
+from navcore.quantities import HEADING, QUANTITIES, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
-
-_Z = 1.96
-"""Quantile of the 95 % interval."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +29,18 @@ class Limit:
     requirement : Requirement
     median : float or None
         Over the seeds, in the unit of the quantity's name; None where it is infinite.
-    met : float
-        Share of the seeds that meet this limit.
+    judgement : Judgement
+        What the seeds say of it.
     """
 
     requirement: Requirement
     median: float | None
-    met: float
+    judgement: Judgement
+
+    @property
+    def met(self) -> float:
+        """Share of the seeds that meet this limit."""
+        return self.judgement.met
 
     @property
     def ratio(self) -> float:
@@ -47,9 +49,12 @@ class Limit:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""
-        one = self.requirement
-        limit = {"at_most" if one.sense == "<=" else "at_least": one.limit}
-        return {"quantity": one.quantity, **limit, "median": self.median, "met": self.met}
+        said = self.judgement
+        seeds = {"median": self.median, "met": self.met, "low": said.low, "high": said.high}
+        if said.verdict is None:
+            return limit_document(self.requirement) | seeds
+        value = {"value": finite(said.value), "verdict": said.verdict, "more_seeds": said.more}
+        return limit_document(self.requirement) | seeds | value
 
 
 @dataclass(frozen=True)
@@ -110,21 +115,6 @@ class Share:
         }
 
 
-def wilson(met: int, count: int) -> tuple[float, float]:
-    """Wilson interval of a share, 95 %, without continuity term.
-
-    Examples
-    --------
-    >>> [round(end, 4) for end in wilson(150, 200)]
-    [0.6857, 0.8049]
-    """
-    share, square = met / count, _Z * _Z
-    middle = share + square / (2.0 * count)
-    width = _Z * math.sqrt(share * (1.0 - share) / count + square / (4.0 * count * count))
-    below = 1.0 + square / count
-    return max(0.0, (middle - width) / below), min(1.0, (middle + width) / below)
-
-
 def require_limits(scenario: Scenario) -> None:
     """Refuse a scenario without limits, or with one that its run cannot be judged by.
 
@@ -139,7 +129,7 @@ def require_limits(scenario: Scenario) -> None:
         faults.append(Fault("", "requirement", None, allowed))
     end_h = scenario.run.duration_h
     for i, one in enumerate(scenario.requirement):
-        if begins_s(one) > end_h * HOUR:
+        if one.from_h > end_h and one.begins_s == one.from_h * HOUR:
             allowed = Text("must be <= {end_h:g} (h), the end of the run", end_h=end_h)
             faults.append(Fault("", f"requirement.{i}.from_h", one.from_h, allowed))
         if scenario.run.fidelity == "channel" and QUANTITIES[one.quantity].kind is HEADING:
@@ -159,18 +149,27 @@ def share_of(setting: Setting, outcomes: Sequence[Outcome]) -> Share:
     outcomes : sequence of Outcome
         One a seed.
     """
-    requirements = setting.ship.scenario.requirement
+    scenario = setting.ship.scenario
+    requirements, end_h = scenario.requirement, scenario.run.duration_h
     values = np.column_stack([_values(setting, one, outcomes) for one in requirements])
-    met = np.array([[one.met(x) for one, x in zip(requirements, row, strict=True)] for row in values])
     ended = np.array([one.ended for one in outcomes])
+    pairs = list(zip(requirements, values.T, strict=True))
+    judgements = [judge(one, column, ended, end_h) for one, column in pairs]
+    met = np.column_stack([_by_seed(*pair, said) for pair, said in zip(pairs, judgements, strict=True)])
     met &= ended[:, None]
     count, full = len(outcomes), int(np.count_nonzero(met.all(axis=1)))
-    medians = np.median(values, axis=0).tolist()
     limits = tuple(
-        Limit(one, median if math.isfinite(median) else None, float(np.mean(met[:, k])))
-        for k, (one, median) in enumerate(zip(requirements, medians, strict=True))
+        Limit(one, finite(float(np.median(column))), said)
+        for (one, column), said in zip(pairs, judgements, strict=True)
     )
     return Share(setting.method, full / count, *wilson(full, count), limits, count - int(ended.sum()))
+
+
+def _by_seed(one: Requirement, values: np.ndarray, said: Judgement) -> np.ndarray:
+    """Which seeds meet a limit; what only all of them have together is met by all or by none."""
+    if QUANTITIES[one.quantity].over and one.share is None:
+        return np.full(len(values), one.met(said.value))
+    return np.array([one.met(value) for value in values.tolist()])
 
 
 def shares_of(
@@ -184,12 +183,14 @@ def shares_of(
 
 def _values(setting: Setting, one: Requirement, outcomes: Sequence[Outcome]) -> np.ndarray:
     """Value on each seed, in the unit of the quantity's name; infinite where it diverged or has none."""
-    unit, quantity = limit_unit(one.quantity), QUANTITIES[one.quantity]
+    unit, quantity = value_unit(one.quantity), QUANTITIES[one.quantity]
     if one.quantity in OF_THE_SETTING:
         return np.full(len(outcomes), measure(setting, one.quantity) / unit)
-    begins = begins_s(one)
+    watch = one.begins_s, one.bound_m
     values = (
-        run_value(quantity, outcome.spans, outcome.final_m, begins) if outcome.ended else math.inf
+        run_value(quantity, outcome.spans, outcome.final_m, *watch)
+        if outcome.ended
+        else without_value(quantity)
         for outcome in outcomes
     )
     return np.fromiter(values, float, len(outcomes)) / unit

@@ -166,7 +166,8 @@ def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:
     start, before = _begin(search)
     settings = search.now()
     missed = bool(settings) and search.excess(settings) > 0.0
-    if any(one.name == "settling_s" for one in defaults):
+    asked = {one.name for one in limits} | {*wanted.names}
+    if any(one.name == "settling_s" for one in defaults) and "heading_settling_s" not in asked:
         defaults = (*defaults, *heading_limit(settings))
     search.requirements = (*limits, *defaults)
     if before == 0.0 and all(QUANTITIES[name].kind for name in wanted.names):

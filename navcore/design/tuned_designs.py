@@ -20,12 +20,12 @@ from navcore.design.shares import Share, shares_of
 from navcore.design.ship import Ship
 from navcore.design.vary import read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
-from navcore.engine.measures import begins_s
+from navcore.engine.readings import BAND
 from navcore.foundation.errors import InputError
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
-from navcore.quantities import HEADING, POSITION, QUANTITIES, TILT, VELOCITY, Quantity, limit_unit
+from navcore.quantities import HEADING, POSITION, QUANTITIES, TILT, VELOCITY, Quantity, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
@@ -37,6 +37,8 @@ INTERVALS = 96
 _EFFORT = Effort(5, 5, 40)
 _PEAK = 1.6
 """Largest length of a vector over the root of its largest mean square, about, in the middle of the seeds."""
+_OF_RMS = {"median": math.sqrt(math.log(2.0)), "p95": math.sqrt(math.log(20.0)), "2drms": 2.0}
+"""Statistics of the length of a vector over its root mean square, where its axes are alike and normal."""
 _SIGNED = {"growth_per_s": 1.0 / 86400.0, "h_slope_s": 100.0}
 """Size of an excess that counts like the limit itself, where a value may be negative."""
 _AXES = {TILT: (0, 1), VELOCITY: (3, 4), HEADING: (2,), POSITION: (5, 6)}
@@ -218,25 +220,41 @@ def _largest_ratio(setting: Setting) -> float:
                 return math.inf
             variances = setting.ship.along(setting.method)
             series = variances.t_s, variances.total
-        ratios.append(_over(foretold(quantity, *series, begins_s(one)), one))
+        ratios.append(_over(foretold(quantity, *series, one), one))
     return max(ratios)
 
 
 def _over(value: float, one: Requirement) -> float:
     """Value over the limit; where that may be negative, 1 at the limit and more beyond."""
-    unit = limit_unit(one.quantity)
+    unit = value_unit(one.quantity)
     if QUANTITIES[one.quantity].signed:
         return 1.0 + (value / unit - one.limit) / _SIGNED.get(one.quantity, 1.0)
     return one.times(value / unit)
 
 
-def foretold(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, from_s: float) -> float:
-    """Value of a quantity of errors, SI, by variances along the run of shape (m, 7)."""
+def foretold(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, one: Requirement) -> float:
+    """Value of a quantity of errors, SI, by variances along the run of shape (m, 7).
+
+    A vector whose axes are alike has a Rayleigh distribution: its percentiles stand to the root of its mean
+    square as `_OF_RMS`.
+    """
     assert quantity.kind is not None
     axes = _AXES[quantity.kind]
-    square = variance[t_s >= from_s - 1e-6][:, axes].sum(axis=1)
-    if quantity.statistic == "final":
-        return math.sqrt(square[-1])
+    counts = t_s >= (0.0 if math.isinf(one.begins_s) else one.begins_s) - 1e-6
+    square = variance[counts][:, axes].sum(axis=1)
+    part = _OF_RMS.get(quantity.over, 1.0)
+    if quantity.statistic == "held":
+        beyond = np.flatnonzero(_OF_RMS["p95"] * np.sqrt(square) > one.bound_m)
+        return float(t_s[beyond[0]]) if len(beyond) else math.inf
+    if quantity.statistic == "settled":
+        beyond = np.flatnonzero(np.sqrt(square) > 0.5 * BAND)
+        return float(t_s[beyond[-1]]) if len(beyond) else 0.0
+    if quantity.statistic == "rate":
+        return part * math.sqrt(square[-1]) / max(float(t_s[-1]), 1.0)
+    if quantity.statistic in ("at", "final"):
+        return part * math.sqrt(square[-1 if math.isinf(one.begins_s) else 0])
+    if quantity.axes in ("roll", "pitch"):
+        square = 0.5 * square
     if quantity.statistic == "max_abs":
         return _PEAK * math.sqrt(square.max())
     return math.sqrt(square.mean() * (0.5 if quantity.axes == "per_axis" else 1.0))

@@ -210,7 +210,10 @@ def batch_outcomes(
     batches = run_batches(scenarios, report)
     step_s = scenarios[0].sampling.record_step_s
     return [
-        tuple(Outcome(not b.diverged[k], spans(b.spans[k], step_s), float(b.position_m[k])) for b in batches)
+        tuple(
+            Outcome(not b.diverged[k], spans(b.spans[k], step_s, b.readings[k]), float(b.position_m[k]))
+            for b in batches
+        )
         for k in range(len(scenarios) if batches else 0)
     ]
 
@@ -252,9 +255,10 @@ def _side_by_side(scenarios: Sequence[Scenario], method: Method, env: Environmen
         requirement_spans(one, step_s),
     )
     batch.advance(env.steps + 1)
-    lanes = zip(batch.diverged, batch.spans, batch.position_m.tolist(), strict=True)
+    lanes = zip(batch.diverged, batch.spans, batch.readings, batch.position_m.tolist(), strict=True)
     return [
-        Outcome(not lost and math.isfinite(final), spans(own, step_s), final) for lost, own, final in lanes
+        Outcome(not lost and math.isfinite(final), spans(own, step_s, read), final)
+        for lost, own, read, final in lanes
     ]
 
 
@@ -292,7 +296,9 @@ def _outcome(
     run, _, status, _ = carried_out(scenario, method, env, state, lambda _: None, None, gains)
     final = float(run.recorder.stats[POSITION, FINAL])
     return Outcome(
-        status == "ok" and math.isfinite(final), spans(run.recorder.spans, scenario.run.step_s), final
+        status == "ok" and math.isfinite(final),
+        spans(run.recorder.spans, scenario.run.step_s, run.recorder.readings),
+        final,
     )
 
 

@@ -6,16 +6,19 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.report import whole_system_report
+from navcore.engine.readings import settle_point, settled_s
 from navcore.engine.run import MethodRun, Run, Span
+from navcore.engine.verdicts import Judgement, Verdict, together
 from navcore.foundation.text import Text
-from navcore.foundation.units import HOUR
 from navcore.foundation.version import __version__
-from navcore.quantities import KINDS, NAMES, QUANTITIES, Quantity, limit_unit
+from navcore.quantities import NAMES, QUANTITIES, Quantity, value_unit
 from navcore.scenario.fields import SCHEMA
 from navcore.scenario.model import Scenario
-from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+from navcore.scenario.requirement import OVER_SEEDS, Requirement
 from navcore.scenario.stochastic import drawn_as_zero
 
 POSITION_ERROR = NAMES[-1]
@@ -33,19 +36,19 @@ class SeedShare:
         Share that meets all limits.
     interval : tuple of float
         Wilson interval of it, 95 %.
-    limits : tuple of (float, (float, float))
-        The same for each limit, in the scenario's order.
+    limits : tuple of Judgement
+        Of each limit, in the scenario's order.
     """
 
     seeds: int
     met: float
     interval: tuple[float, float]
-    limits: tuple[tuple[float, tuple[float, float]], ...]
+    limits: tuple[Judgement, ...]
 
-    def as_dict(self, place: int | None = None) -> dict[str, Any]:
-        """Return the document of interface.md: of one limit by its place, or of all together."""
-        met, (low, high) = (self.met, self.interval) if place is None else self.limits[place]
-        return {"seeds": self.seeds, "met": met, "low": low, "high": high}
+    def as_dict(self) -> dict[str, Any]:
+        """Return the document of interface.md, of all limits together."""
+        low, high = self.interval
+        return {"seeds": self.seeds, "met": self.met, "low": low, "high": high}
 
 
 def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
@@ -65,10 +68,9 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
         ``computed_on`` (the steps that the statistics cover), ``warnings`` (about the scenario as a whole)
         and ``methods``. Each method has ``name``, ``status``, ``warnings``, ``loop``, ``law`` (the share of
         the output rows that were damped, the damping coefficient in force) and ``errors``, in SI units and
-        radians; ``requirements`` where the scenario has any: each with its value, whether
-        it is met, the standard deviations that the run draws as 0, and the share of seeds that meet it. An
-        infinite value, or one that is not a number,
-        is None.
+        radians; ``requirements`` where the scenario has any: each with its value, its verdict, the standard
+        deviations that the run draws as 0, and the share of seeds that meet it; ``verdict`` on all of them.
+        An infinite value, or one that is not a number, is None.
 
     Examples
     --------
@@ -101,28 +103,79 @@ def judged(requirement: Requirement, run: MethodRun) -> tuple[float | None, bool
     run : MethodRun
         Of a method. Null is not met, and what diverged meets nothing.
     """
-    value = measure(run, requirement.quantity, begins_s(requirement)) / limit_unit(requirement.quantity)
-    return _finite(value), run.status == "ok" and requirement.met(value)
+    watch = requirement.begins_s, requirement.bound_m
+    value = measure(run, requirement.quantity, *watch) / value_unit(requirement.quantity)
+    met = run.status == "ok" and requirement.met(value)
+    return finite(_up_to_the_end(requirement, value, run.t_s)), met
 
 
-def begins_s(requirement: Requirement) -> float:
-    """Time from which a requirement's quantity is judged, s; 0 for one of the setting."""
-    return 0.0 if requirement.quantity in OF_THE_SETTING else requirement.from_h * HOUR
+def _up_to_the_end(requirement: Requirement, value: float, t_s: np.ndarray) -> float:
+    """Value; of a time within a bound that was never left the end of the run."""
+    if QUANTITIES[requirement.quantity].statistic != "held" or not len(t_s):
+        return value
+    return min(value, float(t_s[-1]) / value_unit(requirement.quantity))
+
+
+def verdict(
+    requirement: Requirement, run: MethodRun, judgement: Judgement | None
+) -> tuple[float | None, Verdict]:
+    """Value of a requirement's quantity, in the unit of its name, and the verdict: of the seeds, or the run.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Of the run's scenario.
+    run : MethodRun
+        Of a method.
+    judgement : Judgement or None
+        What seeds say; without it a limit over seeds is open.
+
+    Returns
+    -------
+    value : float or None
+        Over the seeds where the verdict is theirs, else of the run; None for one that is infinite.
+    verdict : {"met", "missed", "open"}
+    """
+    value, met = judged(requirement, run)
+    if not needs_seeds(requirement):
+        return value, "met" if met else "missed"
+    if judgement is None or judgement.verdict is None:
+        return value, "open"
+    return finite(judgement.value), judgement.verdict
+
+
+def needs_seeds(requirement: Requirement) -> bool:
+    """Whether a limit is judged over seeds: it asks for a share, or its quantity is one of many seeds."""
+    return requirement.share is not None or requirement.quantity in OVER_SEEDS
 
 
 def _requirements(scenario: Scenario, run: MethodRun, share: SeedShare | None) -> dict[str, Any]:
-    rows = []
+    rows: list[dict[str, Any]] = []
     for place, one in enumerate(scenario.requirement):
-        value, met = judged(one, run)
-        row = {**one.model_dump(mode="json", exclude_none=True), "value": value, "met": met}
-        row["drawn_as_zero"] = list(drawn_as_zero(scenario))
-        rows.append(row if share is None else row | {"share": share.as_dict(place)})
+        judgement = None if share is None else share.limits[place]
+        value, said = verdict(one, run, judgement)
+        row = limit_document(one) | {"value": value, "met": None if said == "open" else said == "met"}
+        row |= {"verdict": said, "drawn_as_zero": list(drawn_as_zero(scenario))}
+        if judgement is not None:
+            row["seeds"] = judgement.as_dict()
+            if needs_seeds(one):
+                row |= {"value_low": finite(judgement.value_low), "value_high": finite(judgement.value_high)}
+                row |= {"run_value": judged(one, run)[0], "more_seeds": judgement.more}
+        rows.append(row)
     if not rows:
         return {}
-    return {"requirements": rows} | ({} if share is None else {"share": share.as_dict()})
+    every: dict[str, Any] = {"requirements": rows, "verdict": together(row["verdict"] for row in rows)}
+    return every | ({} if share is None else {"seeds": share.as_dict()})
 
 
-def measure(run: MethodRun, key: str, from_s: float = 0.0) -> float:
+def limit_document(one: Requirement) -> dict[str, Any]:
+    """Return a limit as a document; ``at_most`` is in the unit of a number, ``words`` say it as written."""
+    given = one.model_dump(mode="json", exclude_none=True)
+    named = "at_least" if one.sense == ">=" else "at_most"
+    return given | {named: one.limit, "words": one.words}
+
+
+def measure(run: MethodRun, key: str, from_s: float = 0.0, bound_m: float = math.inf) -> float:
     """Value of a quantity of a method's run, SI; infinite where there is none or the run did not end well.
 
     Parameters
@@ -133,18 +186,29 @@ def measure(run: MethodRun, key: str, from_s: float = 0.0) -> float:
         A row of `navcore.quantities.QUANTITIES` that is judged of a loop or of a run.
     from_s : float
         Time from which errors count, s: 0, or that of a requirement of the scenario.
+    bound_m : float
+        Position error that a requirement watches, m.
     """
     quantity = QUANTITIES[key]
     if quantity.kind is None:
         uses_log = run.method.kind.referenced
-        return loop_value(
-            key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole, lambda: run.growth_per_s)
-        )
-    value = run_value(quantity, run.spans, run.errors[POSITION_ERROR]["final"], from_s)
-    return value if run.status == "ok" and math.isfinite(value) else math.inf
+        whole, growth = lambda: run.whole, lambda: run.growth_per_s
+        heading = lambda: run.heading_settling_s  # noqa: E731
+        return loop_value(key, JudgedLoop(run.network, run.loop, uses_log, whole, growth, heading))
+    value = run_value(quantity, run.spans, run.errors[POSITION_ERROR]["final"], from_s, bound_m)
+    if run.status != "ok":
+        return without_value(quantity)
+    return math.inf if math.isnan(value) else value
 
 
-def run_value(quantity: Quantity, spans: Sequence[Span], final_m: float, from_s: float = 0.0) -> float:
+def without_value(quantity: Quantity) -> float:
+    """Value of a run that did not end well: the worst there is."""
+    return 0.0 if quantity.statistic == "held" else math.inf
+
+
+def run_value(
+    quantity: Quantity, spans: Sequence[Span], final_m: float, from_s: float = 0.0, bound_m: float = math.inf
+) -> float:
     """Value of a quantity of a run from its recorded lengths, SI; infinite where the run is shorter.
 
     Parameters
@@ -157,14 +221,34 @@ def run_value(quantity: Quantity, spans: Sequence[Span], final_m: float, from_s:
         Position error at the end, m.
     from_s : float
         Time from which errors count, s: 0, or that of a requirement of the scenario.
+    bound_m : float
+        Position error that a requirement watches, m.
     """
-    if quantity.statistic == "final":
+    if quantity.statistic in ("at", "final") and from_s == 0.0:
         return final_m
-    span = next((one for one in spans if one.from_s >= from_s - 1e-6), None)
+    alike = (one for one in spans if one.from_s >= from_s - 1e-6 and math.isclose(one.bound_m, bound_m))
+    span = next(alike, None)
+    if quantity.statistic in ("at", "final"):
+        return final_m if span is None else span.opens_m
     if span is None or quantity.kind is None:
         return math.inf
+    if quantity.statistic in ("settled", "point", "spread"):
+        return _of_readings(quantity, spans[0])
+    if quantity.statistic in ("rate", "held"):
+        return span.rate_mps if quantity.statistic == "rate" else span.held_s
     lengths = span.rms if quantity.statistic == "rms" else span.largest
-    return lengths[KINDS.index(quantity.kind)] * (math.sqrt(0.5) if quantity.axes == "per_axis" else 1.0)
+    return lengths[quantity.length] * (math.sqrt(0.5) if quantity.axes == "per_axis" else 1.0)
+
+
+def _of_readings(quantity: Quantity, whole: Span) -> float:
+    """Value of a quantity of a gyrocompass's readings; a settle point has a sign where seeds compare it."""
+    readings = whole.readings, whole.reading_s
+    if quantity.statistic == "settled":
+        return settled_s(*readings)
+    point, spread = settle_point(*readings)
+    if quantity.statistic == "spread":
+        return spread
+    return point if quantity.over else abs(point)
 
 
 def versions() -> dict[str, str]:
@@ -188,7 +272,7 @@ def _method(run: MethodRun) -> dict[str, Any]:
         "loop": _loop(run),
         "law": {"computed_on": Text("output rows"), **asdict(run.law_in_force)},
         "errors": {
-            name: {key: _finite(value) for key, value in statistics.items()}
+            name: {key: finite(value) for key, value in statistics.items()}
             for name, statistics in run.errors.items()
         },
     }
@@ -198,15 +282,17 @@ def _loop(run: MethodRun) -> dict[str, Any]:
     loop = run.loop
     return {
         "stable": loop.stable,
-        "poles": [[_finite(pole.real), _finite(pole.imag)] for pole in loop.poles],
-        "h0": _finite(loop.h0),
-        "damping_ratio": _finite(loop.damping_ratio),
-        "settling_s": None if loop.settling_s is None else _finite(loop.settling_s),
+        "poles": [[finite(pole.real), finite(pole.imag)] for pole in loop.poles],
+        "h0": finite(loop.h0),
+        "damping_ratio": finite(loop.damping_ratio),
+        "settling_s": None if loop.settling_s is None else finite(loop.settling_s),
         **whole_system_report(run.whole),
-        "growth_per_s": None if run.growth_per_s is None else _finite(run.growth_per_s),
+        "growth_per_s": None if run.growth_per_s is None else finite(run.growth_per_s),
+        "heading_settling_s": finite(run.heading_settling_s),
     }
 
 
-def _finite(value: float) -> float | None:
+def finite(value: float) -> float | None:
+    """Return a number that JSON can hold; None for one that is infinite or none."""
     # + 0.0: no "-0.0" in a document
     return float(value) + 0.0 if math.isfinite(value) else None

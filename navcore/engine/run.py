@@ -1,6 +1,7 @@
 """Result of a simulation."""
 
 import hashlib
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,7 +14,7 @@ from navcore.analysis import Loop
 from navcore.analysis.whole_system import WholeSystem
 from navcore.foundation.drawing import drawn
 from navcore.foundation.text import Text
-from navcore.mechanization.recorder import Recorder
+from navcore.mechanization.recorder import Recorder, axes_along, reading_steps
 from navcore.networks.base import LinearNetwork
 from navcore.quantities import NAMES
 from navcore.scenario.method import Method
@@ -69,14 +70,32 @@ class Span:
     from_s : float
         Time of the first step, s.
     largest : tuple of float
-        Largest tilt and velocity error as vectors, heading and position error.
+        Largest value of each of `navcore.quantities.LENGTHS`.
     rms : tuple of float
         Root mean squares of the same.
+    opens_m : float
+        Position error at its first step, m.
+    rate_mps : float
+        Slope of the least-squares line through the origin of the position error over time, m/s.
+    bound_m : float
+        Position error that was watched, m; infinite for none.
+    held_s : float
+        Last time up to which the position error stayed within it, s; infinite where it always did.
+    readings : tuple of (float, float)
+        Heading error, and the same times cos L, every ``reading_s``, rad; of the whole run alone.
+    reading_s : float
+        Interval of the readings, s.
     """
 
     from_s: float
     largest: tuple[float, ...]
     rms: tuple[float, ...]
+    opens_m: float = math.inf
+    rate_mps: float = math.inf
+    bound_m: float = math.inf
+    held_s: float = math.inf
+    readings: tuple[tuple[float, float], ...] = ()
+    reading_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -118,6 +137,8 @@ class MethodRun:
     growth_per_s : float or None
         Fastest growth of the whole system as the law is sampled, of one channel with the `channel` fidelity,
         1/s; None where no closed loop stands for the method.
+    heading_settling_s : float
+        Settling of the heading by its azimuth loop, s; infinite where nothing holds it.
     spans : tuple of Span
         The whole run, and from each ``from_h`` of the scenario's requirements on; in order.
     place : int
@@ -139,6 +160,7 @@ class MethodRun:
     navigation: np.ndarray | None = None
     sigma: np.ndarray | None = None
     growth_per_s: float | None = None
+    heading_settling_s: float = math.inf
     spans: tuple[Span, ...] = ()
     place: int = 0
 
@@ -295,19 +317,73 @@ def statistics(recorder: Recorder) -> dict[str, dict[str, float]]:
     return out
 
 
-def spans(records: np.ndarray, step_s: float) -> tuple[Span, ...]:
-    """Lengths of the error vectors over each span that has a state; of `recorder.SPAN`, shape (n,)."""
-    lengths = []
-    for span in records[records["count"] > 0]:
-        rms = np.sqrt(span["sums"] / span["count"])
-        largest = np.sqrt(span["largest"])
-        lengths.append(Span(float(span["first"] * step_s), tuple(largest.tolist()), tuple(rms.tolist())))
-    return tuple(lengths)
+def spans(records: np.ndarray, step_s: float, readings: np.ndarray | None = None) -> tuple[Span, ...]:
+    """Lengths of the error vectors over each span that has a state.
+
+    Parameters
+    ----------
+    records : ndarray of `navcore.mechanization.recorder.SPAN`, shape (n,)
+        The first is of the whole run.
+    step_s : float
+        Step, s.
+    readings : ndarray, shape (m, 2), optional
+        Of the heading, as of the recorder; they go with the first span.
+    """
+    made = [_span(span, step_s) for span in records[records["count"] > 0]]
+    if made and readings is not None:
+        taken = readings[~np.isnan(readings[:, 0])]
+        pairs = tuple((float(plain), float(level)) for plain, level in taken)
+        made[0] = replace(made[0], readings=pairs, reading_s=reading_steps(step_s) * step_s)
+    return tuple(made)
 
 
-def span_of(rows: np.ndarray) -> Span:
-    """Lengths of the error vectors in output rows of a part of a run, shape (m, 8) or more columns."""
+def _span(span: np.void, step_s: float) -> Span:
+    first, count = int(span["first"]), int(span["count"])
+    last = first + count - 1
+    squares = _sum_of_squares(last) - _sum_of_squares(first - 1)
+    broken = int(span["broken"])
+    return Span(
+        from_s=first * step_s,
+        largest=tuple(np.sqrt(span["largest"]).tolist()),
+        rms=tuple(np.sqrt(span["sums"] / count).tolist()),
+        opens_m=float(span["opens"]),
+        rate_mps=float(span["by_step"]) / (squares * step_s) if squares else 0.0,
+        bound_m=math.sqrt(span["bound"]),
+        held_s=max(broken - 1, 0) * step_s if broken <= last else math.inf,
+    )
+
+
+def _sum_of_squares(last: int) -> float:
+    """Sum of k^2 for k = 0..last."""
+    return last * (last + 1) * (2 * last + 1) / 6.0 if last > 0 else 0.0
+
+
+def span_of(t_s: np.ndarray, rows: np.ndarray, truth: np.ndarray) -> Span:
+    """Lengths of the error vectors in output rows of a part of a run.
+
+    Parameters
+    ----------
+    t_s : ndarray, shape (m,)
+        Times of the rows, s.
+    rows : ndarray, shape (m, 8) or with more columns
+        Errors, columns of `navcore.quantities.NAMES`.
+    truth : ndarray, shape (m, 15)
+        True motion there.
+    """
     phi_e, phi_n, phi_u, dv_e, dv_n = rows[:, :5].T
-    squares = np.array([phi_e**2 + phi_n**2, dv_e**2 + dv_n**2, phi_u**2, rows[:, len(NAMES) - 1] ** 2])
+    position, axes = rows[:, len(NAMES) - 1], axes_along(truth)
+    roll = (phi_e * axes["sin_heading"] + phi_n * axes["cos_heading"]) * axes["sec_pitch"]
+    pitch = phi_e * axes["cos_heading"] - phi_n * axes["sin_heading"]
+    level = phi_u * axes["cos_lat"]
+    squares = np.array(
+        [phi_e**2 + phi_n**2, dv_e**2 + dv_n**2, phi_u**2, position**2, level**2, roll**2, pitch**2]
+    )
     largest, rms = np.sqrt(squares.max(axis=1)), np.sqrt(squares.mean(axis=1))
-    return Span(0.0, tuple(largest.tolist()), tuple(rms.tolist()))
+    times = float(t_s @ t_s)
+    return Span(
+        0.0,
+        tuple(largest.tolist()),
+        tuple(rms.tolist()),
+        opens_m=float(position[0]),
+        rate_mps=float(t_s @ position) / times if times else 0.0,
+    )

@@ -28,6 +28,7 @@ UNITS = {
     "h": HOUR,
     "m/s": 1.0,
     "kn": KNOT,
+    "nmi/h": KNOT,
     "m": 1.0,
     "km": 1000.0,
     "nmi": NAUTICAL_MILE,

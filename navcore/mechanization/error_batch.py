@@ -25,7 +25,7 @@ from navcore.mechanization.error_model import (
     newest_epoch,
     runge_kutta,
 )
-from navcore.mechanization.recorder import Errors, given_out, take_lengths
+from navcore.mechanization.recorder import Errors, given_out, no_readings, reading_steps, take_lengths
 from navcore.mechanization.trajectory import Coefficients, RateTerms
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 
@@ -43,7 +43,9 @@ class _Runs(NamedTuple):
     s: np.ndarray
     ring: np.ndarray
     log: LogErrors  # error: (m, 2, WIDTH)
+    axes: np.ndarray  # `AXES`, of the motion that all share
     spans: np.ndarray  # `SPAN`, shape (runs, spans)
+    readings: np.ndarray  # (runs, m, 2), as of the single run's recorder
     position_m: np.ndarray
     diverged: np.ndarray
 
@@ -87,8 +89,11 @@ def _take_epoch(t, j, run, x, motion, log, s):
 
 
 @inlined
-def _epoch(k, t, run, motion, begin, x, runs, epoch):
-    """Log, law and record of one run, lane of the same number, at step k; log epoch ``epoch`` is in force."""
+def _epoch(k, t, run, motion, begin, x, runs, epoch, reading):
+    """Log, law and record of one run, lane of the same number, at step k; log epoch ``epoch`` is in force.
+
+    The heading is read there as number ``reading``; not if that is negative.
+    """
     errors = _errors_of(x, run)
     if not in_range(errors):
         runs.diverged[run] = True
@@ -103,13 +108,17 @@ def _epoch(k, t, run, motion, begin, x, runs, epoch):
     north, east = begin.m * errors.d_lat, begin.n_cos * errors.d_lon
     position = math.sqrt(north * north + east * east)
     runs.position_m[run] = position
-    take_lengths(k, given_out(errors, law.s), position, runs.spans[run])
+    axes = runs.axes[k if runs.axes.shape[0] > 1 else 0]
+    take_lengths(k, given_out(errors, law.s), position, axes, runs.spans[run])
+    if reading >= 0:
+        runs.readings[run, reading, 0] = errors.phi_u
+        runs.readings[run, reading, 1] = errors.phi_u * axes.cos_lat
     x[_LAW * _W + run], x[(_LAW + 1) * _W + run] = c.c_e, c.c_n
     x[(_LAW + 2) * _W + run], x[(_LAW + 3) * _W + run], x[(_LAW + 4) * _W + run] = c.a_e, c.a_n, c_u
 
 
 @kernel
-def _advance_block(first, last, final, h, half, law_input, gyro, accel, x, runs):
+def _advance_block(first, last, final, h, half, law_input, gyro, accel, x, runs, reading_every):
     """Integrate steps first..last of 0..final for all runs of a block; ``gyro`` and ``accel`` are flat."""
     half_stride = 1 if half.shape[0] > 1 else 0
     law_stride = 1 if law_input.shape[0] > 1 else 0
@@ -119,8 +128,9 @@ def _advance_block(first, last, final, h, half, law_input, gyro, accel, x, runs)
     for k in range(first, last):
         record = half[2 * k * half_stride]
         epoch = newest_epoch(k * h, epoch, runs.log.time_s)
+        reading = k // reading_every if k % reading_every == 0 else -1
         for run in range(runs.p.shape[0]):
-            _epoch(k, k * h, run, law_input[k * law_stride], record, x, runs, epoch)
+            _epoch(k, k * h, run, law_input[k * law_stride], record, x, runs, epoch, reading)
         if k == final:
             return
         begin = _half(record)
@@ -161,6 +171,8 @@ class ErrorModelBatch:
     ----------
     spans : ndarray of `SPAN`, shape (runs, spans)
         Lengths of each run's error vectors, as of the single run's recorder.
+    readings : ndarray, shape (runs, m, 2)
+        Of the heading, as of the single run's recorder.
     position_m : ndarray, shape (runs,)
         Last position error, m.
     diverged : ndarray of bool, shape (runs,)
@@ -189,6 +201,8 @@ class ErrorModelBatch:
         self._coefficients = coefficients
         self._gyro, self._accel = sensors.gyro.reshape(-1), sensors.accel.reshape(-1)
         self.spans = np.tile(spans[spans["first"] <= steps], (runs, 1))
+        self._reading_every = reading_steps(step_s)
+        self.readings = np.stack([no_readings(steps, self._reading_every)] * runs)
         self.position_m, self.diverged = np.zeros(runs), np.zeros(runs, bool)
         self._runs = _Runs(
             p=stacked([law.p] * runs, LAW_PARAMETERS),
@@ -201,7 +215,9 @@ class ErrorModelBatch:
                 reference.body_frame,
                 float(reference.hold_s),
             ),
+            axes=coefficients.axes,
             spans=self.spans,
+            readings=self.readings,
             position_m=self.position_m,
             diverged=self.diverged,
         )
@@ -215,7 +231,7 @@ class ErrorModelBatch:
         c = self._coefficients
         _advance_block(
             self._position, last, self._steps, self._step_s, c.half, c.law, self._gyro, self._accel,
-            self._x, self._runs,
+            self._x, self._runs, self._reading_every,
         )  # fmt: skip
         self._position = last
         return last > self._steps

@@ -9,6 +9,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
 from navcore.foundation.records import REAL, record_type
+from navcore.mechanization.recorder import axes_along
 from navcore.motion.truth import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU, Truth
 
 HALF_STEP = record_type(
@@ -65,10 +66,13 @@ class Coefficients:
         Coefficients each half step; one row when nothing changes.
     law : ndarray of `LAW_INPUT`, shape (n + 1,) or (1,)
         What the law is told each step.
+    axes : ndarray of `navcore.mechanization.recorder.AXES`, shape (n + 1,) or (1,)
+        Of the ship, each step.
     """
 
     half: np.ndarray
     law: np.ndarray
+    axes: np.ndarray
 
 
 def table_of(half: np.ndarray) -> np.ndarray:
@@ -132,4 +136,4 @@ def coefficients(truth_half: Truth, earth: Earth, coupled: bool) -> Coefficients
     steps = values[::2]
     law = np.empty(len(steps), LAW_INPUT)
     law["v_e"], law["v_n"], law["heading"] = steps[:, VE], steps[:, VN], steps[:, HEADING]
-    return Coefficients(half, law)
+    return Coefficients(half, law, axes_along(steps))

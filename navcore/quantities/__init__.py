@@ -5,6 +5,7 @@ from navcore.quantities.errors import (
     ERRORS,
     HEADING,
     KINDS,
+    LENGTHS,
     NAMES,
     POSITION,
     STATISTICS,
@@ -15,16 +16,17 @@ from navcore.quantities.errors import (
     budgeted,
     components,
 )
+from navcore.quantities.quantity import Judged, Quantity
 from navcore.quantities.table import (
     LIMITED,
     OBJECTIVES,
     QUANTITIES,
     TUNED,
     WEIGHED,
-    Judged,
-    Quantity,
     limit_unit,
+    limit_unit_name,
     searched,
+    value_unit,
 )
 
 __all__ = [
@@ -32,6 +34,7 @@ __all__ = [
     "ERRORS",
     "HEADING",
     "KINDS",
+    "LENGTHS",
     "LIMITED",
     "NAMES",
     "OBJECTIVES",
@@ -49,5 +52,7 @@ __all__ = [
     "budgeted",
     "components",
     "limit_unit",
+    "limit_unit_name",
     "searched",
+    "value_unit",
 ]

@@ -46,6 +46,14 @@ KINDS = (TILT, VELOCITY, HEADING, POSITION)
 """In the order of a budget."""
 
 
+LENGTHS = (*(kind.name for kind in KINDS), "seclat", "roll", "pitch")
+"""What a run keeps of its errors at every step.
+
+Tilt and velocity error as vectors, heading and position error, the heading error times cos L, and the errors
+of roll and pitch.
+"""
+
+
 @dataclass(frozen=True)
 class RecordedError:
     """One error of the navigation.

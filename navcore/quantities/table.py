@@ -1,79 +1,16 @@
 """The table of quantities: name, unit, definition, of what each is judged, and how.
 
 A row says *of what* a quantity is judged. *How* is one function of each room that judges:
-`navcore.analysis.judged.loop_value` of a loop, `navcore.engine.measures.measure` of a run, and
-`navcore.design.measures.measure` of an ensemble or of the steady state.
+`navcore.analysis.judged.loop_value` of a loop, `navcore.engine.measures.measure` of a run,
+`navcore.engine.verdicts` of many seeds together, and `navcore.design.measures.measure` of an ensemble or of
+the steady state.
 """
-
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal
 
 from navcore.foundation.text import Text
 from navcore.foundation.units import UNITS
-from navcore.quantities.errors import HEADING, NAMES, POSITION, TILT, VELOCITY, Kind, components
-
-Judged = Literal["loop", "run", "ensemble", "steady"]
-"""The loop in force, the run of one seed, all runs that the sensors' statistics give, or the steady state."""
-
-
-@dataclass(frozen=True, eq=False)
-class Quantity:
-    """One number by which a method is judged; it is computed in SI.
-
-    Attributes
-    ----------
-    key : str
-        Name on the command line and in files.
-    names : dict of str to str
-        Of what it can be judged ("loop", "run", "ensemble", "steady"), and its name on the page then.
-    unit, shown : str
-        SI unit, and the unit in which it is shown, a key of `navcore.foundation.units.UNITS`.
-    help : str
-        Definition.
-    kind : Kind or None
-        Kind of the errors that it summarises; None for a quantity of a loop.
-    statistic : {"rms", "max_abs", "final"} or ""
-        Statistic of these errors.
-    axes : {"per_axis", "vector"} or ""
-        How two axes make one number: root mean square of both, or the length of the vector.
-    sense : {"<=", ">="} or ""
-        Sense of a limit. Only what is better when smaller is an objective; "" for what has no better side.
-    signed : bool
-        It may be negative, so that two values have no ratio.
-    typical : float
-        Size (SI) that a miss is compared with where the limit is smaller.
-    """
-
-    key: str
-    names: Mapping[Judged, str]
-    unit: str
-    shown: str
-    help: str
-    kind: Kind | None = None
-    statistic: Literal["", "rms", "max_abs", "final"] = ""
-    axes: Literal["", "per_axis", "vector"] = ""
-    sense: Literal["", "<=", ">="] = "<="
-    signed: bool = False
-    typical: float = 1e-12
-
-    @property
-    def label(self) -> str:
-        """Name as the page judges it if nothing else is said: the first of `names`."""
-        return next(iter(self.names.values()))
-
-    @property
-    def size(self) -> float:
-        """SI value of the unit in which it is shown."""
-        return UNITS[self.shown]
-
-    @property
-    def errors(self) -> tuple[str, ...]:
-        """Names of the recorded errors that it summarises."""
-        if self.kind is None:
-            return ()
-        return NAMES[-1:] if self.kind is POSITION else components(self.kind)
-
+from navcore.quantities.errors import HEADING, POSITION, TILT, VELOCITY
+from navcore.quantities.quantity import Quantity
+from navcore.quantities.specified import SPECIFIED
 
 _ROWS = (
     Quantity(
@@ -316,10 +253,11 @@ _ROWS = (
         statistic="final",
         axes="vector",
     ),
+    *SPECIFIED,
 )
 QUANTITIES = {row.key: row for row in _ROWS}
 """All rows by key."""
-TUNED = tuple(row.key for row in _ROWS if row.sense and "run" not in row.names)
+TUNED = tuple(row.key for row in _ROWS if row.sense and not {"run", "seeds"} & row.names.keys())
 """Quantities that a search can measure, and so keep a limit of."""
 OBJECTIVES = tuple(key for key in TUNED if QUANTITIES[key].sense == "<=")
 """Quantities that a search can make small."""
@@ -342,23 +280,56 @@ LIMITED = (
     "h0_deviation",
     "h_slope_s",
     "log_tilt",
+<<<<<<< HEAD
     "worst_tilt",
     "worst_velocity",
+=======
+    *(row.key for row in SPECIFIED),
+>>>>>>> 71c0ca5a (Judge limits in the words of a specification)
 )
 """Quantities of a ``[[requirement]]``."""
 
 
-def limit_unit(key: str) -> float:
-    """SI value of the unit of a limit, of a row of `LIMITED`: that in its name, else that on the page.
+def value_unit(key: str) -> float:
+    """SI value of the unit of a row of `LIMITED` in files: that in its name, else that on the page.
 
     Examples
     --------
-    >>> limit_unit("heading_max_arcmin") == UNITS["arcmin"], limit_unit("velocity_max_mps")
+    >>> value_unit("heading_max_arcmin") == UNITS["arcmin"], value_unit("velocity_max_mps")
     (True, 1.0)
-    >>> limit_unit("tilt_overshoot")
-    0.01
+    >>> value_unit("tilt_overshoot"), value_unit("reset_interval_h")
+    (0.01, 3600.0)
     """
     return UNITS.get(key.rpartition("_")[2], QUANTITIES[key].size)
+
+
+def limit_unit(key: str) -> float:
+    """SI value of the unit of a limit that is given as a number, of a row of `LIMITED`.
+
+    Examples
+    --------
+    >>> limit_unit("heading_max_arcmin") == value_unit("heading_max_arcmin")
+    True
+    >>> limit_unit("reset_interval_h")
+    1.0
+    """
+    row = QUANTITIES[key]
+    return UNITS[row.bounds] if row.bounds else value_unit(key)
+
+
+def limit_unit_name(key: str) -> str:
+    """Name of that unit, as `navcore.foundation.with_unit` reads it; empty for a plain number.
+
+    Examples
+    --------
+    >>> limit_unit_name("heading_max_arcmin"), limit_unit_name("position_rate_cep_nmph")
+    ('arcmin', 'kn')
+    """
+    row, size = QUANTITIES[key], limit_unit(key)
+    suffix = key.rpartition("_")[2]
+    if row.bounds or suffix not in UNITS:
+        return row.bounds or {"nmi/h": "kn"}.get(row.shown, row.shown)
+    return suffix if size != row.size or row.shown == suffix else row.shown
 
 
 def searched(key: str) -> Quantity | None:

@@ -19,6 +19,7 @@ from navcore.questions.base import Cancelled, Progress, Question, Writes, option
 if TYPE_CHECKING:
     from navcore.engine.measures import SeedShare
     from navcore.engine.run import LawInForce, MethodRun, Run
+    from navcore.engine.verdicts import Judgement, Verdict
 
 _RUN = 0.2
 """Of the time, for the run itself where seeds judge its limits too."""
@@ -108,22 +109,21 @@ class Ran(Answer):
     def _verdicts(self) -> Iterator[Table | str]:
         """Give a row for each method and limit, and what the run draws as 0; nothing without limits."""
         from navcore.design.stated import assumed_zero
-        from navcore.engine.measures import judged
+        from navcore.engine.measures import verdict
         from navcore.scenario.stochastic import drawn_as_zero
 
         run, shares, limits = self.run, self.shares, self.run.scenario.requirement
         if not limits:
             return
-        heads = Text("requirement"), Text("method"), Text("value"), Text("run")
+        heads = Text("requirement"), Text("method"), Text("value"), Text("verdict")
         rows: list[tuple[str, ...]] = []
         for place, one in enumerate(limits):
-            limit = f"{one.quantity} {one.sense} {number(one.limit)}"
-            limit += f" from {number(one.from_h)} h" if one.from_h else ""
+            limit = Text("{clause}: {words}", clause=one.clause, words=one.words) if one.clause else one.words
             for k, method in enumerate(run.methods):
-                value, met = judged(one, method)
-                said = [_share(shares[k], place)] if shares else []
-                verdict = Text("met") if met else Text("missed")
-                rows.append((limit, method.method.name, number(value), verdict, *said))
+                judgement = shares[k].limits[place] if shares else None
+                value, word = verdict(one, method, judgement)
+                said = [] if judgement is None else [_share(judgement)]
+                rows.append((limit, method.method.name, number(value), verdict_words(word, judgement), *said))
         if shares and len(limits) > 1:
             every = Text("all limits")
             rows += [(every, one.method.name, "", "", _share(shares[k])) for k, one in enumerate(run.methods)]
@@ -189,8 +189,19 @@ class RunQuestion(Question):
         write_results(answer.run, out, self.format, reads, answer.shares)
 
 
-def _share(share: SeedShare, place: int | None = None) -> str:
-    one = share.as_dict(place)
+def verdict_words(verdict: Verdict, judgement: Judgement | None) -> str:
+    """Verdict in words, of an open one with the number of seeds that would decide."""
+    from navcore.engine.verdicts import WORDS
+
+    if verdict != "open" or judgement is None:
+        return WORDS[verdict]
+    if judgement.more is None:
+        return Text("open: no number of seeds decides")
+    return Text("open: {more} more seeds decide", more=judgement.more)
+
+
+def _share(share: SeedShare | Judgement) -> str:
+    one = share.as_dict()
     met, low, high = (number(100.0 * one[key], 3) for key in ("met", "low", "high"))
     return Text("{met} % of {seeds} ({low} to {high})", met=met, seeds=share.seeds, low=low, high=high)
 

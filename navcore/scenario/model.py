@@ -18,6 +18,7 @@ from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.fields import ScenarioFields
 from navcore.scenario.method import Method
 from navcore.scenario.needs import need_faults
+from navcore.scenario.requirement import clause_faults
 from navcore.scenario.strapdown_faults import strapdown_faults
 
 MAX_STEPS = 3_000_000
@@ -92,7 +93,8 @@ class Scenario(ScenarioFields):
         yield from _method_faults(self)
         yield from self.alignment.faults()
         for i, one in enumerate(self.requirement):
-            yield from one.faults(f"requirement.{i}")
+            yield from one.faults(f"requirement.{i}", run.duration_h)
+        yield from clause_faults(self.requirement)
         yield from need_faults(self)
         yield from strapdown_faults(self)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from navcore.design.judged import left_out_lines
 from navcore.design.measures import TUNING_INTERVALS
-from navcore.design.shares import Share, require_limits, shares_of, wilson
+from navcore.design.shares import Share, require_limits, shares_of
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import (
@@ -23,6 +23,7 @@ from navcore.design.tuned_designs import (
     tuned_methods,
 )
 from navcore.engine.ensemble import outcomes
+from navcore.engine.verdicts import wilson
 from navcore.foundation.answers import Answer, Column, Table, number
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.progress import part_of

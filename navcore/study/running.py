@@ -11,12 +11,12 @@ import numpy as np
 
 from navcore.engine.drivers.linear import all_but_methods
 from navcore.engine.ensemble import Outcome, batch_outcomes, linear_outcomes, width_of
-from navcore.engine.measures import begins_s, measure, run_value
+from navcore.engine.measures import measure, run_value, without_value
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import HOUR
-from navcore.quantities import NAMES, QUANTITIES, limit_unit
+from navcore.quantities import NAMES, QUANTITIES, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
@@ -151,10 +151,10 @@ def _judged(plan: Plan, scenario: Scenario, result: Result) -> Row:
     else:
         status, reason = "ok" if result.ended else "diverged", None
     row: Row = {"status": status, "reason": reason}
-    row |= {key: _finite(_value(result, key, 0.0) / limit_unit(key)) for key in output.metrics}
+    row |= {key: _finite(_value(result, key, 0.0) / value_unit(key)) for key in output.metrics}
     all_met = True
     for k, one in enumerate(scenario.requirement):
-        value = _value(result, one.quantity, begins_s(one)) / limit_unit(one.quantity)
+        value = _value(result, one.quantity, one.begins_s, one.bound_m) / value_unit(one.quantity)
         met = status == "ok" and one.met(value)
         all_met &= met
         row |= {f"requirement_{k}": _finite(value), f"requirement_{k}_met": met}
@@ -174,12 +174,14 @@ def _distance(t_s: np.ndarray, place: int, at_s: float) -> float:
     return abs(float(t_s[place]) - at_s) if 0 <= place < len(t_s) else math.inf
 
 
-def _value(result: Result, key: str, from_s: float) -> float:
+def _value(result: Result, key: str, from_s: float, bound_m: float = math.inf) -> float:
     """Value of a quantity, SI; infinite where there is none or the run did not end well."""
     if isinstance(result, MethodRun):
-        return measure(result, key, from_s)
+        return measure(result, key, from_s, bound_m)
     assert key not in OF_THE_SETTING  # `_needs_runs`
-    return run_value(QUANTITIES[key], result.spans, result.final_m, from_s) if result.ended else math.inf
+    if not result.ended:
+        return without_value(QUANTITIES[key])
+    return run_value(QUANTITIES[key], result.spans, result.final_m, from_s, bound_m)
 
 
 def _finite(value: float) -> float | None:

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from navcore.design.shares import wilson
 from navcore.engine.measures import versions
+from navcore.engine.verdicts import wilson
 from navcore.quantities import QUANTITIES
 from navcore.scenario.fields import SCHEMA
 from navcore.study.model import series_column

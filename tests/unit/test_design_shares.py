@@ -10,12 +10,12 @@ import pytest
 
 from navcore.design.budget import budget
 from navcore.design.designs import designs
-from navcore.design.shares import wilson
 from navcore.design.stated import assumed_zero
 from navcore.design.tune import tune
 from navcore.engine.ensemble import drawn, outcomes
 from navcore.engine.measures import judged
 from navcore.engine.simulation import simulate
+from navcore.engine.verdicts import wilson
 from navcore.foundation.errors import InputError, StoppedError
 from navcore.foundation.units import ARCMIN, ARCSEC
 from navcore.scenario.file import to_toml

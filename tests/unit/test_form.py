@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
+from navcore.foundation.with_unit import read_with_unit
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
@@ -22,7 +23,7 @@ from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
 from schuler_bench.editing import form, typed
 from schuler_bench.editing.form import FieldSpec, Slider
-from schuler_bench.editing.typed import read_typed, unit_of
+from schuler_bench.editing.typed import unit_of
 
 BLOCKS: list[type[BaseModel]] = [
     Imu, Reference, LogEvent, Outage, RunSettings, SiteSettings, InitialError,
@@ -167,7 +168,7 @@ def test_numbers_are_parted_by_commas_or_blanks() -> None:
     ],
 )
 def test_units_are_understood(text: str, unit: str, value: float) -> None:
-    assert read_typed(text, unit) == pytest.approx(value, rel=1e-13)
+    assert read_with_unit(text, unit) == pytest.approx(value, rel=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +184,7 @@ def test_units_are_understood(text: str, unit: str, value: float) -> None:
 )
 def test_what_does_not_fit_is_refused_in_words(text: str, unit: str, told: str) -> None:
     with pytest.raises(ValueError, match=told):
-        read_typed(text, unit)
+        read_with_unit(text, unit)
 
 
 def test_a_name_that_begins_with_its_block_stands_without_it() -> None:
@@ -203,4 +204,4 @@ def test_the_unit_stands_in_the_label() -> None:
         "°/h",
         "",
     )
-    assert math.isclose(read_typed("90 min", unit_of("duration (h)")), 1.5)
+    assert math.isclose(read_with_unit("90 min", unit_of("duration (h)")), 1.5)

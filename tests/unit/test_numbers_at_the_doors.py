@@ -10,12 +10,12 @@ from navcore import InputError, Scenario, load, parse_network
 from navcore.design.measures import read_requirement
 from navcore.design.vary import read_varied
 from navcore.foundation.numbers import NotANumber, read_number
+from navcore.foundation.with_unit import read_with_unit
 from navcore.foundation.written_toml import read_value
 from navcore.io.column_map import parse_map
 from navcore.scenario.file import parse_toml
 from schuler_bench.editing import typed
 from schuler_bench.editing.limits import limit_text, with_limit
-from schuler_bench.editing.typed import read_typed
 from tests.number_texts import MEANT, NARROW, REFUSED, WITH_UNIT, same
 
 MEANT_IDS, REFUSED_IDS = [ascii(text) for text in MEANT], [ascii(text)[:20] for text in REFUSED]
@@ -27,20 +27,20 @@ MEANT_IDS, REFUSED_IDS = [ascii(text) for text in MEANT], [ascii(text)[:20] for 
 @pytest.mark.parametrize("unit", ["", "h", "°/h", "kn"])
 @pytest.mark.parametrize(("text", "meant"), MEANT.items(), ids=MEANT_IDS)
 def test_a_box_takes_the_number_that_is_meant(text: str, meant: float, unit: str) -> None:
-    assert same(read_typed(text, unit), meant)
+    assert same(read_with_unit(text, unit), meant)
 
 
 @pytest.mark.parametrize("unit", ["", "h", "°/h", "kn"])
 @pytest.mark.parametrize("text", REFUSED, ids=REFUSED_IDS)
 def test_a_box_refuses_everything_else_with_the_text(text: str, unit: str) -> None:
     with pytest.raises(NotANumber) as caught:
-        read_typed(text, unit)
+        read_with_unit(text, unit)
     assert caught.value.text == text
 
 
 @pytest.mark.parametrize(("text", "unit", "meant"), [(text, *more) for text, more in WITH_UNIT.items()])
 def test_a_box_takes_a_unit(text: str, unit: str, meant: float) -> None:
-    assert same(read_typed(text, unit), meant)
+    assert same(read_with_unit(text, unit), meant)
 
 
 @pytest.mark.parametrize(

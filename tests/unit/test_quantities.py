@@ -47,6 +47,7 @@ ROOT = Path(__file__).parents[2]
 TABLE = ROOT / "navcore" / "quantities"
 OF_LOOP = [key for key, row in QUANTITIES.items() if "loop" in row.names]
 OF_RUN = [key for key, row in QUANTITIES.items() if "run" in row.names]
+OF_SEEDS = [key for key, row in QUANTITIES.items() if "seeds" in row.names]
 SHIPS = ("sikuliaq-like", "sun-ship")
 
 
@@ -61,7 +62,7 @@ def run(request: pytest.FixtureRequest) -> Run:
 def test_a_name_stands_for_one_quantity_judged_of_one_thing() -> None:
     names = [name for row in QUANTITIES.values() for name in row.names.values()]
     assert len(set(names)) == len(names)
-    said = {"loop": "", "run": " of this run", "ensemble": "ensemble ", "steady": "steady "}
+    said = {"loop": "", "run": " of this run", "seeds": "", "ensemble": "ensemble ", "steady": "steady "}
     assert said.keys() == set(get_args(Judged))
     for row in QUANTITIES.values():
         assert all(said[of] in name for of, name in row.names.items()), row.key
@@ -72,7 +73,7 @@ def test_a_name_stands_for_one_quantity_judged_of_one_thing() -> None:
 
 def test_each_room_computes_the_rows_that_it_judges_and_no_other() -> None:
     assert set(judged._VALUES) == set(OF_LOOP)
-    assert set(QUANTITIES) == {"h0"} | {*TUNED} | {*OF_RUN}
+    assert set(QUANTITIES) == {"h0"} | {*TUNED} | {*OF_RUN} | {*OF_SEEDS}
     assert {*WEIGHED} < {*OBJECTIVES} < {*TUNED}
 
 
@@ -160,7 +161,7 @@ def test_a_key_has_the_same_number_wherever_it_is_shown(run: Run) -> None:
     judged_all = verdicts(run, ())
     ship = Ship(run.scenario, along_run=False)
     for place, method in enumerate(run.methods):
-        numbers = {key: measure(method, key) for key in (*OF_LOOP, *OF_RUN)}
+        numbers = {key: measure(method, key) for key in (*OF_LOOP, *OF_RUN, *OF_SEEDS)}
         setting = Setting(ship, method.method)
         assert {key: measure_setting(setting, key) for key in OF_LOOP} == {
             key: numbers[key] for key in OF_LOOP

@@ -50,12 +50,12 @@ def test_a_run_says_what_seeds_say(tmp_path: Path, capsys: pytest.CaptureFixture
     tilt, position = method["requirements"]
     assert tilt["met"] and position["met"]
     assert tilt["drawn_as_zero"] == ["imu.gyro_bias_std_dph", "imu.accel_bias_std_ug"]
-    assert tilt["share"]["seeds"] == 24 and tilt["share"]["met"] < 0.1
-    assert tilt["share"]["met"] < tilt["share"]["high"] < 0.35
+    assert tilt["seeds"]["seeds"] == 24 and tilt["seeds"]["met"] < 0.1
+    assert tilt["seeds"]["met"] < tilt["seeds"]["high"] < 0.35
     found = designs(Scenario.parse(SHIP), 24, as_set=True)
     share = next(one for one in found.methods if one.method.label() == "damped")
-    assert method["share"] == {"seeds": 24, "met": share.met, "low": share.low, "high": share.high}
-    assert [row["share"]["met"] for row in method["requirements"]] == [one.met for one in share.limits]
+    assert method["seeds"] == {"seeds": 24, "met": share.met, "low": share.low, "high": share.high}
+    assert [row["seeds"]["met"] for row in method["requirements"]] == [one.met for one in share.limits]
 
 
 def test_the_command_prints_a_verdict_for_each_method_and_limit(

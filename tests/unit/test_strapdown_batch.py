@@ -1,5 +1,6 @@
 """A batch gives each run what the single run gives."""
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -39,7 +40,10 @@ def test_each_run_is_the_single_run(motion, network, seconds, law_s):
     starts = [start_from(truth[0], e) for e in errors]
     logs = [reference((0.1 * run, -0.2), seconds) for run in range(RUNS)]
     settings = Settings(RATE, samples, int(RATE * law_s), int(RATE), 1.0)
-    laws, spans = [law("external", network, law_s) for _ in range(RUNS)], spans_from([2, seconds // 2])
+    laws, spans = (
+        [law("external", network, law_s) for _ in range(RUNS)],
+        spans_from([(2, math.inf), (seconds // 2, math.inf)]),
+    )
     batch = BatchRun(starts, laws, logs, settings, WGS84, truth, spans, before)
     # pieces of no round length, and more than there is
     lanes, piece = np.concatenate([*side_by_side(sims, WIDTH)]), min(777, samples * 2 // 5)

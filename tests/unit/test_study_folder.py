@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import navcore.engine.ensemble
-from navcore.design.shares import wilson
+from navcore.engine.verdicts import wilson
 from navcore.foundation.errors import InputError
 from navcore.study.file import load, studies
 from navcore.study.plan import Plan, plan_of, require_affordable

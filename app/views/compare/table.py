@@ -59,6 +59,8 @@ class Line:
         Labels of those that it misses.
     setting : str
         Parameters of the method's network.
+    unknown : int
+        Requirements that only seeds decide.
     """
 
     pin: Pin | None
@@ -68,6 +70,7 @@ class Line:
     asked: int = 0
     missed: tuple[str, ...] = ()
     setting: str = ""
+    unknown: int = 0
 
     def key(self, column: str) -> tuple[bool, float, str]:
         """By what it is sorted: what is not known comes last."""
@@ -122,11 +125,12 @@ def _line(
     method = part.methods[place]
     numbers = {name: measure(method, one.key) / one.size for name, one in MEASURED.items()}
     limits = asked(whole, requirements)
-    missed = tuple(verdict.quantity.label for verdict in limits if not verdict.passed[place])
+    missed = tuple(verdict.quantity.label for verdict in limits if verdict.words[place] == "missed")
+    unknown = sum(verdict.words[place] == "open" for verdict in limits)
     if limits:
         numbers["verdict"] = float(len(missed))
     setting = design_text(method.method)
-    return Line(pin, color, method.method.name, numbers, len(limits), missed, setting)
+    return Line(pin, color, method.method.name, numbers, len(limits), missed, setting, unknown)
 
 
 def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: bool = True) -> str:
@@ -193,7 +197,7 @@ def _row(line: Line, best: dict[str, float], baseline: int | None, buttons: bool
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:
     if name == "verdict":
-        return cell(overall(len(line.missed), line.asked, line.missed), "sb-n")
+        return cell(overall(len(line.missed), line.asked, line.missed, line.unknown), "sb-n")
     value = line.numbers[name]
     text = "never" if name == "settling" and math.isinf(value) else rounded(value)
     mark = {"look": "sb-best", "title": style.BEST} if best.get(name) == value else {}

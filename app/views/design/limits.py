@@ -16,16 +16,17 @@ from navcore.engine.run import Run
 from navcore.foundation.answers import assumptions
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
-from navcore.quantities import QUANTITIES, limit_unit
+from navcore.quantities import QUANTITIES, value_unit
 from navcore.scenario.method import Method
+from schuler_bench.editing.limits import shown_limit
 from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots.effective import growth_text
-from schuler_bench.plots.limits import SIGNS, limit_words, short_label
+from schuler_bench.plots.limits import SIGNS, requirement_words, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
 from schuler_bench.plots.varied import factors_text
-from schuler_bench.session.requirements import asked, limits_of
-from schuler_bench.views.requirements.shares import share_text
+from schuler_bench.session.requirements import asked
+from schuler_bench.views.requirements.shares import judgements, share_text
 from schuler_bench.views.tune.fronts import setting_text
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def designs_html(
     """
     own = [
         Line(method.method, odds(method.method), said, growth=method.growth_per_s)
-        for method, said in zip(run.methods, _in_run(run), strict=True)
+        for method, said in zip(run.methods, _verdicts(run, odds), strict=True)
     ]
     head = row(cell(quoted(text), tag="th") for text in _HEADS)
     body = [_title(Text("Methods of this scenario")), *map(_line, own)]
@@ -108,8 +109,7 @@ def designs_html(
         body += [_title(_STOPPED if found.stopped else _TUNED), *map(_line, designs)]
     elif found is not None:
         body += [_title(_robust_title(found)), *map(_line, _robust_lines(run, found))]
-    limits = limits_of(run.scenario.requirement)
-    words = Text.joined(", ", (limit_words(key, limit, short_label(key)) for key, limit in limits.items()))
+    words = Text.joined(", ", map(requirement_words, run.scenario.requirement))
     assumed = found.assumptions() if found is not None else assumptions(assumed_zero(run.scenario))
     said = Text.joined(" ", (Text("Limits: {asked}.", asked=words), *assumed))
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
@@ -145,16 +145,25 @@ def _title(text: str) -> str:
     return row([cell(quoted(text), "sb-title", colspan=len(_HEADS))])
 
 
-def _in_run(run: Run) -> list[str]:
-    """Verdict of the run on the limits of a method: the answer to a slider, before any seed is run."""
-    judged = asked(run, run.scenario.requirement)
-    said = []
-    for k in range(len(run.methods)):
-        missed = [short_label(verdict.quantity.key) for verdict in judged if not verdict.passed[k]]
-        names = Text.joined(", ", missed)
-        word = Text("✗ misses {missed}", missed=names) if missed else Text("✓ meets all")
-        said.append(cell(quoted(word), "sb-missed" if missed else "sb-met", tag="span"))
-    return said
+def _verdicts(run: Run, odds: Callable[[Method], Odds | None]) -> list[str]:
+    """Verdict on the limits of each method: the answer to a slider, before any seed is run."""
+    judged = asked(run, run.scenario.requirement, [judgements(odds(one.method)) for one in run.methods])
+    return [
+        verdict_badge([(one.words[k], one.quantity.key) for one in judged]) for k in range(len(run.methods))
+    ]
+
+
+def verdict_badge(words: Sequence[tuple[str, str]]) -> str:
+    """Badge of a method by the verdicts on its limits, each with the key of its quantity."""
+    missed, unknown = (
+        Text.joined(", ", [short_label(key) for found, key in words if found == word])
+        for word in ("missed", "open")
+    )
+    if missed:
+        return cell(quoted(Text("✗ misses {missed}", missed=missed)), "sb-missed", tag="span")
+    if unknown:
+        return cell(quoted(Text("? open: {names}", names=unknown)), "sb-open", tag="span")
+    return cell(quoted(Text("✓ meets all")), "sb-met", tag="span")
 
 
 def _line(line: Line) -> str:
@@ -217,14 +226,14 @@ def _worst(limits: Sequence[Limit], diverged: int) -> str:
         return Text("none")
     one = worst.requirement
     row_ = QUANTITIES[one.quantity]
-    unit = limit_unit(one.quantity) / row_.size
+    unit = value_unit(one.quantity) / row_.size
     middle = Text("no value") if worst.median is None else number(worst.median * unit, 3)
     words = Text(
         "{label}: median {median}, limit {sign}\u00a0{limit}\u00a0{unit}",
         label=short_label(one.quantity),
         median=middle,
         sign=SIGNS[one.sense],
-        limit=number(one.limit * unit, 4),
-        unit=row_.shown,
+        limit=number(shown_limit(one), 4),
+        unit=row_.limit_shown,
     )
     return Text("{words}; {lost} seeds diverge", words=words, lost=diverged) if diverged else words

@@ -1,6 +1,6 @@
 """Shares of seeds beside a tick: how often a method meets a limit, and all of them."""
 
-from navcore.design.shares import wilson
+from navcore.engine.verdicts import Judgement
 from navcore.foundation.text import Text
 from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots.table import cell
@@ -23,11 +23,21 @@ def share_text(met: float, low: float, high: float) -> str:
     )
 
 
+def judgements(odds: Odds | None) -> tuple[Judgement, ...] | None:
+    """What the seeds of a method say of each limit; None where none has been judged."""
+    return None if odds is None else tuple(limit.judgement for limit in odds.share.limits)
+
+
 def odds_html(odds: Odds | None, place: int | None = None) -> str:
     """Share of one limit by its place, or of all together; empty where no seed has been judged."""
     if odds is None or (place is not None and place >= len(odds.share.limits)):
         return ""
-    met = odds.share.met if place is None else odds.share.limits[place].met
-    low, high = wilson(round(met * odds.seeds), odds.seeds)
+    said = odds.share if place is None else odds.share.limits[place].judgement
     hint = Text("Share of {seeds} seeds that meet it, 95 % interval", seeds=odds.seeds)
-    return cell(share_text(met, low, high), "sb-share", tag="div", title=hint)
+    shown = cell(share_text(said.met, said.low, said.high), "sb-share", tag="div", title=hint)
+    if isinstance(said, Judgement) and said.verdict == "open":
+        more = Text("no number of seeds decides")
+        if said.more is not None:
+            more = Text("{more} more seeds decide", more=said.more)
+        shown += cell(more, "sb-share", tag="div")
+    return shown

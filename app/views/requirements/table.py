@@ -4,9 +4,20 @@ import math
 from collections.abc import Mapping, Sequence
 
 from navcore.engine.run import Run
+from navcore.engine.verdicts import WORDS
 from navcore.foundation.text import Text, quoted
+from navcore.scenario.requirement import Requirement
 from navcore.scenario.stochastic import drawn_as_zero
-from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of
+from schuler_bench.editing.limits import (
+    BOXES,
+    DETAILS,
+    FROM,
+    box_text,
+    detail_label,
+    from_text,
+    label_of,
+    shown_limit,
+)
 from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots import style
 from schuler_bench.plots.limits import SIGNS
@@ -14,7 +25,7 @@ from schuler_bench.plots.pinned import Pinned, pinned_methods, together
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number, rounded
 from schuler_bench.session.requirements import Verdict, verdicts
-from schuler_bench.views.requirements.shares import odds_html
+from schuler_bench.views.requirements.shares import judgements, odds_html
 
 _DIGITS = 4
 
@@ -43,7 +54,7 @@ def requirements_html(
     """
     judged = together(run, pins)
     shown = range(len(judged.methods)) if methods is None else methods
-    judged_all = verdicts(judged, run.scenario.requirement)
+    judged_all = verdicts(judged, run.scenario.requirement, [judgements(one) for one in odds])
     lines = [Text("solid {method_color}", method_color=style.method_color(one.place)) for one in run.methods]
     lines += [Text("dashed {color}", color=pinned.color) for pinned in pinned_methods(pins)]
     heads = (
@@ -121,30 +132,27 @@ def _row(
     unit = (
         Text(' <span class="sb-muted">({shown:html})</span>', shown=quantity.shown) if quantity.shown else ""
     )
-    limit = (
-        Text("no limit")
-        if verdict.limit is None
-        else f"{SIGNS[quantity.sense]} {number(verdict.limit, _DIGITS)}"
-    )
+    limit = Text("no limit") if one is None else _limit(one)
     if boxes is not None:
-        text = "" if verdict.limit is None else f"{verdict.limit:.6g}"
+        text = "" if one is None else box_text(one)
         box = _box(quantity.key, label_of(quantity.key), text, boxes)
-        limit = Text("{sign} {box}", sign=SIGNS[quantity.sense], box=box)
+        details = "" if one is None else _details(one, boxes)
+        limit = Text("{sign} {box}{details}", sign=SIGNS[quantity.sense], box=box, details=details)
     cells = (
         cell(
             Text(
                 "{measured}{mark}{odds}",
                 measured=_measured(verdict, value),
-                mark=_mark(verdict, ok) if asked else "",
+                mark=_mark(word) if asked else "",
                 odds=odds if one is not None else "",
             ),
             "sb-n",
             data_measure=quantity.key,
             data_value=_number(value),
-            data_passed=_word(verdict, ok),
+            data_passed="" if word == "" else WORDS[word],
         )
-        for value, ok, odds in (
-            (verdict.measured[i], verdict.passed[i], said) for i, said in zip(shown, beside, strict=True)
+        for value, word, odds in (
+            (verdict.measured[i], verdict.words[i], said) for i, said in zip(shown, beside, strict=True)
         )
     )
     name = Text("{label:html}{unit}", label=quantity.label, unit=unit)
@@ -166,22 +174,43 @@ def _measured(verdict: Verdict, value: float) -> str:
     return Text("never") if verdict.quantity.kind is None else Text("no value")
 
 
-def _word(verdict: Verdict, passed: bool) -> str:
-    return "" if verdict.limit is None else Text("met") if passed else Text("missed")
+def _limit(one: Requirement) -> str:
+    """Limit in a table without boxes, with its share, hour and clause below it."""
+    asked = Text("{sign} {limit}", sign=SIGNS[one.sense], limit=number(shown_limit(one), _DIGITS))
+    if isinstance(one.at_most, str):
+        asked = Text("{sign} {limit:html}", sign=SIGNS[one.sense], limit=one.at_most)
+    for detail in DETAILS.values():
+        if text := detail.text(one):
+            words = Text("{label}: {text}", label=detail.label, text=text)
+            asked += cell(quoted(words), "sb-muted", tag="div")
+    return asked
 
 
-def _mark(verdict: Verdict, passed: bool) -> str:
+def _details(one: Requirement, refused: Mapping[str, int]) -> str:
+    """Boxes of a limit for its share, hour and clause."""
+    boxes = (
+        Text(
+            '<label class="sb-detail">{label:html} {box}</label>',
+            label=detail.label,
+            box=_box(f"{one.quantity}.{field}", detail_label(one.quantity, field), detail.text(one), refused),
+        )
+        for field, detail in DETAILS.items()
+        if detail.allowed(one.quantity)
+    )
+    return Text.joined("", boxes)
+
+
+def _mark(word: str) -> str:
     """Word beside the value, of one width, so that the values stand below each other."""
-    word = "" if verdict.limit is None else _badge(Text("✓ met") if passed else Text("✗ missed"), passed)
-    return cell(word, "sb-word", tag="span")
+    return cell(_BADGES[word]() if word else "", "sb-word", tag="span")
 
 
 def _overall(judged: tuple[Verdict, ...], index: int) -> str:
-    asked = [verdict for verdict in judged if verdict.limit is not None]
-    return overall(sum(not verdict.passed[index] for verdict in asked), len(asked))
+    words = [verdict.words[index] for verdict in judged if verdict.requirement is not None]
+    return overall(words.count("missed"), len(words), unknown=words.count("open"))
 
 
-def overall(missed: int, asked: int, which: Sequence[str] = ()) -> str:
+def overall(missed: int, asked: int, which: Sequence[str] = (), unknown: int = 0) -> str:
     """Badge that says how many of the limits a method misses, and ``which``, where nothing else says it."""
     if not asked:
         return cell(Text("nothing asked"), "sb-muted", tag="span")
@@ -191,8 +220,17 @@ def overall(missed: int, asked: int, which: Sequence[str] = ()) -> str:
         return _badge(text, False)
     if missed:
         return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=asked), False)
+    if unknown:
+        return cell(Text("? {unknown} of {asked} open", unknown=unknown, asked=asked), "sb-open", tag="span")
     return _badge(Text("✓ meets all {asked}", asked=asked) if asked > 1 else Text("✓ meets it"), True)
 
 
 def _badge(text: str, passed: bool) -> str:
     return cell(text, "sb-met" if passed else "sb-missed", tag="span")
+
+
+_BADGES = {
+    "met": lambda: _badge(Text("✓ met"), True),
+    "missed": lambda: _badge(Text("✗ missed"), False),
+    "open": lambda: cell(Text("? open"), "sb-open", tag="span"),
+}

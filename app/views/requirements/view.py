@@ -1,11 +1,25 @@
 """Tab "Requirements": limits of the scenario as numbers, and who meets them, in this run and over seeds."""
 
 from collections import Counter
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
-from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of, limit_text, with_begin, with_limit
+from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import (
+    BOXES,
+    DETAILS,
+    FROM,
+    detail_label,
+    detail_text,
+    from_text,
+    label_of,
+    limit_text,
+    with_begin,
+    with_detail,
+    with_limit,
+)
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, PictureView, Tab
@@ -69,15 +83,16 @@ class RequirementsView(PictureView[str]):
     def _typed(self, argument: str) -> None:
         """Take over a limit as typed: its key and a number, or nothing."""
         key, _, text = argument.partition(" ")
-        if key != "from" and key not in BOXES:
+        box = _box_of(key)
+        if box is None:
             return
-        label = FROM if key == "from" else label_of(key)
+        label = box.label
         with self.session.lock:
             scenario = self.session.scenario
             try:
-                changed = with_begin(scenario, text) if key == "from" else with_limit(scenario, key, text)
+                changed = box.changed(scenario, text)
             except InputError as error:
-                kept = from_text(scenario) if key == "from" else limit_text(scenario, key)
+                kept = box.text(scenario)
                 said = kept or Text("no requirement")
                 lines = [
                     Text("{label_of}: {refusal}", label_of=fault.field, refusal=notices.refusal(fault, said))
@@ -90,6 +105,35 @@ class RequirementsView(PictureView[str]):
                 self.session.change(changed, self, name=Text("limit {label}", label=label))
                 return
         self.frame.redraw()
+
+
+@dataclass(frozen=True)
+class _Box:
+    """A box of the table: its label, its text in a scenario, and the scenario with another text."""
+
+    label: str
+    text: Callable[[Scenario], str]
+    changed: Callable[[Scenario, str], Scenario]
+
+
+def _box_of(name: str) -> _Box | None:
+    """Box by its name: ``from``, a quantity, or a quantity and a field of its block; None for no box."""
+    key, _, field = name.partition(".")
+    if name == "from":
+        return _Box(FROM, from_text, with_begin)
+    if key not in BOXES:
+        return None
+    if not field:
+        return _Box(
+            label_of(key), lambda now: limit_text(now, key), lambda now, text: with_limit(now, key, text)
+        )
+    if field not in DETAILS or not DETAILS[field].allowed(key):
+        return None
+    return _Box(
+        detail_label(key, field),
+        lambda now: detail_text(now, key, field),
+        lambda now, text: with_detail(now, key, field, text),
+    )
 
 
 VIEW = RequirementsView

@@ -87,8 +87,8 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
         name, state = method.method.name, display.state_of(method.method.name)
         facts = [*_numbers(method, _before(found, name), display)]
         if limits:  # the verdict first: where a card has no room for all, the last ones are left out
-            missed = [verdict.quantity.label for verdict in limits if not verdict.passed[place]]
-            facts.insert(0, _met(len(limits), missed, drawn_as_zero(run.scenario)))
+            words = [(verdict.words[place], verdict.quantity.label) for verdict in limits]
+            facts.insert(0, _met(words, drawn_as_zero(run.scenario)))
         ended = Text.joined(", ", [words for words in (ENDINGS.get(method.status, ""), word(state)) if words])
         said = Text("<i>{words}</i>", words=ended) if ended else ""
         yield Text(
@@ -146,12 +146,19 @@ def _change(value: float, before: MethodRun | None, key: str) -> str:
     return f"{part:+d} %" if part else ""
 
 
-def _met(count: int, missed: list[str], zero: tuple[str, ...]) -> str:
-    words, which = Text("{met} of {count}", met=count - len(missed), count=count), Text.joined(", ", missed)
+def _met(found: list[tuple[str, str]], zero: tuple[str, ...]) -> str:
+    missed = [label for word, label in found if word == "missed"]
+    unknown = [label for word, label in found if word == "open"]
+    met = len(found) - len(missed) - len(unknown)
+    words, which = Text("{met} of {count}", met=met, count=len(found)), Text.joined(", ", missed)
     told = Text("misses {which}", which=which) if missed else Text("meets all limits")
+    if unknown:
+        names = Text.joined(", ", unknown)
+        still = Text("open, for seeds judge it: {names}", names=names)
+        told = Text("{told}; {still}", told=told, still=still) if missed else still
     if zero:
         told = Text("{told}; drawn as 0 in this run: {fields}", told=told, fields=", ".join(zero))
-    look = "sb-missed" if missed else "sb-met"
+    look = "sb-missed" if missed else "sb-open" if unknown else "sb-met"
     return _number(
         Text("limits met"), told, Text('<span class="{look}">{words}</span>', look=look, words=words)
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from navcore.design.measures import Setting, measure
 from navcore.design.ship import Ship
 from navcore.foundation.text import Text, quoted
-from navcore.quantities import QUANTITIES, Quantity, limit_unit
+from navcore.quantities import QUANTITIES, Quantity, value_unit
 from schuler_bench.plots.limits import SIGNS, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
@@ -46,7 +46,7 @@ def _runs(task: TuneQuestion, tuned: Tuned) -> Iterator[str]:
     limits = {one.quantity: one for one in task.scenario.requirement}
     for key, change in tuned.confirmed.changes.items():
         quantity = QUANTITIES[key]
-        size = quantity.size / (limit_unit(key) if key in limits else 1.0)
+        size = quantity.size / (value_unit(key) if key in limits else 1.0)
         limit = limits.get(key)
         texts = [
             *(_shown(value, size) for value in (change.before, change.after)),

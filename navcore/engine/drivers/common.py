@@ -1,13 +1,14 @@
 """Steps that every fidelity takes alike for a method: its network and law, the log it sees, its result."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from navcore.analysis import Loop, analyse
 from navcore.analysis.filter_loop import filter_loop
+from navcore.analysis.heading_settling import heading_settling
 from navcore.analysis.held_log import Stretch, growth_along, held_log
 from navcore.analysis.whole_system import WholeSystem, duration, whole_system
 from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
@@ -44,8 +45,15 @@ def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
 
 
 def requirement_spans(scenario: Scenario, step_s: float) -> np.ndarray:
-    """Make empty spans (`navcore.mechanization.recorder.SPAN`) from where each requirement begins."""
-    return spans_from(math.ceil(one.from_h * HOUR / step_s - 1e-9) for one in scenario.requirement)
+    """Make empty spans (`navcore.mechanization.recorder.SPAN`): one for what each requirement watches."""
+    return spans_from((math.ceil(begin / step_s - 1e-9), bound) for begin, bound in watches(scenario))
+
+
+def watches(scenario: Scenario) -> Iterator[tuple[float, float]]:
+    """Yield the time (s) from which each requirement watches a run, and the position error (m) it bounds."""
+    for one in scenario.requirement:
+        if math.isfinite(one.begins_s):
+            yield one.begins_s, one.bound_m
 
 
 def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
@@ -77,12 +85,15 @@ class Stability:
         Of the channel, of the whole system, and of the law as it is sampled.
     growth_per_s : float or None
         Of the whole system along the motion; None where no closed loop stands for the method.
+    heading_settling_s : float
+        `navcore.analysis.heading_settling`; infinite where nothing holds the heading.
     """
 
     loop: Loop
     whole: WholeSystem
     warnings: tuple[str, ...]
     growth_per_s: float | None = None
+    heading_settling_s: float = math.inf
 
 
 def stability_of(
@@ -131,7 +142,8 @@ def stability_of(
             growth = growth_under_way(scenario, acting, truth.stretches, timing_s, azimuth, turned)
             if growth > max(_MORE * at_rest, _LEAST_GROWTH):
                 warnings += (_under_way(truth, turned, growth),)
-    return Stability(loop, whole, warnings, growth)
+    place = lat, scenario.earth, scenario.site.height_m
+    return Stability(loop, whole, warnings, growth, heading_settling(acting, *place, azimuth))
 
 
 def growth_under_way(
@@ -265,7 +277,8 @@ def method_run(
         loop=stability.loop,
         whole=stability.whole,
         growth_per_s=stability.growth_per_s,
-        spans=spans(recorder.spans, step_s),
+        heading_settling_s=stability.heading_settling_s,
+        spans=spans(recorder.spans, step_s, recorder.readings),
         status=status,
         reason=ending,
         warnings=_warnings(method, network, (*stability.warnings, *notices), ending),

@@ -139,7 +139,7 @@ def filtered_linear(
     """
     run, truth = scenario.run, env.truth_half.values
     model, P, notices = filter_model(scenario, run.step_s, truth[0], env.reference.moored)
-    recorder = make_recorder(env.steps, run.step_s, run.output_step_s)
+    recorder = make_recorder(env.steps, run.step_s, run.output_step_s, env.coefficients.axes)
     kept, known = None, False
     if gains is not None:
         known = gains.values is not None

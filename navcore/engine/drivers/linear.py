@@ -1,5 +1,6 @@
 """A scenario of fidelity `channel` or `error_model`: two methods at a time on the linear error model."""
 
+import math
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -20,6 +21,7 @@ from navcore.engine.drivers.common import (
     requirement_spans,
     seen_by,
     stability_of,
+    watches,
 )
 from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
@@ -66,8 +68,8 @@ def unchanged_methods(scenario: Scenario, before: Run | None) -> tuple[MethodRun
 
 def all_but_methods(scenario: Scenario) -> Scenario:
     """Return what all methods share: a method of two scenarios in which it is equal comes out the same."""
-    begins = tuple(sorted({one.from_h for one in scenario.requirement} - {0.0}))
-    return scenario.model_copy(update={"method": (), "title": "", "source": "", "requirement": begins})
+    watched = tuple(sorted({*watches(scenario)} - {(0.0, math.inf)}))
+    return scenario.model_copy(update={"method": (), "title": "", "source": "", "requirement": watched})
 
 
 def run_methods(
@@ -199,7 +201,7 @@ def _damped(
         reference=seen_by(method, env.reference),
         law=law_of(method, network_of(scenario, method), step_s),
         x=state.copy(),
-        recorder=make_recorder(env.steps, step_s, scenario.run.output_step_s),
+        recorder=make_recorder(env.steps, step_s, scenario.run.output_step_s, env.coefficients.axes),
     )
     return run, ()
 

@@ -15,7 +15,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.records import stacked
 from navcore.law.law import LAW_PARAMETERS, LAW_STATE, Law
-from navcore.mechanization.recorder import given_out, take_lengths
+from navcore.mechanization.recorder import axes_along, given_out, no_readings, reading_steps, take_lengths
 from navcore.mechanization.strapdown.kernel import (
     arms,
     azimuth_epoch,
@@ -122,9 +122,12 @@ class _Runs(NamedTuple):
     ring: np.ndarray
     log: VelocityReference
     truth: np.ndarray
+    axes: np.ndarray  # `AXES`, at the rows of the truth
     spans: np.ndarray  # `SPAN`, shape (runs, MOST_SPANS)
+    readings: np.ndarray  # (runs, m, 2), as of the single run's recorder
     position_m: np.ndarray
     diverged: np.ndarray
+    reading_every: int
 
 
 class _Pace(NamedTuple):
@@ -141,7 +144,12 @@ def _record(row, run, errors, m, n_cos, runs):
     north, east = m * errors.d_lat, n_cos * errors.d_lon
     position = math.sqrt(north * north + east * east)
     runs.position_m[run] = position
-    take_lengths(row, errors, position, runs.spans[run])
+    axes = runs.axes[row if runs.axes.shape[0] > 1 else 0]
+    take_lengths(row, errors, position, axes, runs.spans[run])
+    if row % runs.reading_every == 0:
+        place = row // runs.reading_every
+        runs.readings[run, place, 0] = errors.phi_u
+        runs.readings[run, place, 1] = errors.phi_u * axes.cos_lat
 
 
 @kernel
@@ -224,6 +232,8 @@ class BatchRun:
     ----------
     spans : ndarray of `SPAN`, shape (runs, MOST_SPANS)
         Lengths of each run's error vectors, as of the single run's recorder.
+    readings : ndarray, shape (runs, m, 2)
+        Of the heading, as of the single run's recorder.
     position_m : ndarray, shape (runs,)
         Last recorded position error, m.
     diverged : ndarray of bool, shape (runs,)
@@ -254,6 +264,8 @@ class BatchRun:
             raise ValueError(f"a batch has at most {WIDTH} runs, not {runs}")
         self.settings, self.position = settings, 0
         self.spans = np.tile(spans, (runs, 1))
+        every = reading_steps(settings.record_step_s)
+        self.readings = np.stack([no_readings(settings.samples // settings.record_every, every)] * runs)
         self.position_m, self.diverged = np.zeros(runs), np.zeros(runs, bool)
         self._own = _Runs(
             con=stacked([constants(start, settings, earth) for start in starts], CONSTANTS),
@@ -269,9 +281,12 @@ class BatchRun:
                 logs[0].hold_s,
             ),
             truth=np.ascontiguousarray(truth, dtype=float),
+            axes=axes_along(truth),
             spans=self.spans,
+            readings=self.readings,
             position_m=self.position_m,
             diverged=self.diverged,
+            reading_every=every,
         )
         x = np.zeros((_ROWS, WIDTH))
         for lane in range(WIDTH):

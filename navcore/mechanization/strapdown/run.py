@@ -11,7 +11,7 @@ from navcore.foundation.earth import Earth
 from navcore.foundation.records import new_record
 from navcore.foundation.text import Text
 from navcore.law.law import Law
-from navcore.mechanization.recorder import QUANTITIES, Recorder, make_recorder
+from navcore.mechanization.recorder import QUANTITIES, Recorder, axes_along, make_recorder
 from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.attitude import quaternion_of
 from navcore.mechanization.strapdown.kernel import Pace, advance_kernel
@@ -254,7 +254,7 @@ def start_run(
     )  # fmt: skip
     if before is not None:
         x["before"] = before
-    recorder = make_recorder(records, settings.record_step_s, settings.output_step_s)
+    recorder = make_recorder(records, settings.record_step_s, settings.output_step_s, axes_along(truth))
     assert recorder.stats.shape[0] == QUANTITIES
     return StrapdownRun(
         settings=settings,
