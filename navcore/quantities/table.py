@@ -280,12 +280,9 @@ LIMITED = (
     "h0_deviation",
     "h_slope_s",
     "log_tilt",
-<<<<<<< HEAD
     "worst_tilt",
     "worst_velocity",
-=======
     *(row.key for row in SPECIFIED),
->>>>>>> 71c0ca5a (Judge limits in the words of a specification)
 )
 """Quantities of a ``[[requirement]]``."""
 

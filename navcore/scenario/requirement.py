@@ -41,14 +41,10 @@ class Requirement(Parameters):
         help=Text(
             "What is limited. Largest tilt and velocity error: length of the vector; root mean squares of "
             "them: per axis. Of the setting, whatever from_h is: settling_s, growth_per_s, "
-<<<<<<< HEAD
             "tilt_overshoot (%), damping_ratio, h0_deviation, h_slope_s, log_tilt and worst_tilt "
-            "(arcsec), worst_velocity (m/s)."
-=======
-            "tilt_overshoot (%), damping_ratio, h0_deviation, h_slope_s, log_tilt (arcsec), "
-            "heading_settling_s. Over the seeds: position_cep50_m, position_r95_m, position_2drms_m, "
-            "position_trms_m, position_rate_cep_nmph, settle_repeat_seclat_arcmin."
->>>>>>> 71c0ca5a (Judge limits in the words of a specification)
+            "(arcsec), worst_velocity (m/s), heading_settling_s. Over the seeds: position_cep50_m, "
+            "position_r95_m, position_2drms_m, position_trms_m, position_rate_cep_nmph, "
+            "settle_repeat_seclat_arcmin."
         ),
     )
     at_most: Annotated[float, Field(strict=True, ge=-_LARGEST, le=_LARGEST)] | str | None = Field(
