@@ -33,6 +33,7 @@ from navcore.io.column_names import QUANTITIES, Column, known_columns, plain_nam
 from navcore.io.columns import listed
 from navcore.io.imu_columns import DIMENSIONS, ImuColumn, imu_column
 from navcore.io.times.counts import EPOCHS, zero_of
+from navcore.io.times.named_counts import named_count
 from navcore.io.written_units import UNITS, unit_of, written
 
 LARGEST_MAP_BYTES = 65536
@@ -51,7 +52,8 @@ class TimeMap(Parameters):
         Name in the header; several are joined by a space (date and time, GPS week and seconds).
     unit : str
         ``iso``; ``s``, ``ms``, ``us``, ``ns``, ``min``, ``h`` or ``day``, of Unix time or of the file's own
-        zero; with an epoch, ``days since 1899-12-30``; ``gps_week_s``; or a format of `datetime.strptime`.
+        zero; with an epoch, ``days since 1899-12-30`` or ``mjd``; ``gps_week_s``; or a format of
+        `datetime.strptime`.
         Empty: as it would be guessed.
     epoch : str
         From which the numbers count: a date, or a name such as ``excel``, ``matlab``, ``gps``, ``ntp``.
@@ -72,7 +74,10 @@ class TimeMap(Parameters):
 
     @property
     def _since(self) -> tuple[str, str]:
-        """Unit and epoch of ``days since 1970-01-01``."""
+        """Unit and epoch of ``days since 1970-01-01`` and of names such as ``mjd``."""
+        named = named_count(self.unit)
+        if named is not None:
+            return named.unit, named.epoch
         unit, _, epoch = self.unit.partition(" since ")
         return unit.strip(), epoch.strip()
 

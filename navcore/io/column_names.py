@@ -8,10 +8,13 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from navcore.io.times.named_counts import COUNT_NAMES, NamedCount, named_count
 from navcore.io.written_units import UNITS, unaccented, unit_of, without_brackets, written
 
 UTC, UNIX, SECONDS, DATE, CLOCK = "utc", "unix", "t_s", "date", "clock"
 """Columns of time: a date and time, Unix time, s since the file's own zero; a date and a time apart."""
+_COUNT = "count"
+"""Column of numbers whose name says what they count, such as MJD: the time (`UTC`) where no other one is."""
 
 
 @dataclass(frozen=True)
@@ -128,10 +131,11 @@ _TIMES = {
     "gpst stamp header_stamp field_header_stamp rosbag_timestamp utc_timestamp datetime_utc date_time_utc "
     "utc_datetime time_iso iso8601 date_time_iso time_gmt "
     "gmt_time datetime_gmt gmt base_date_time basedatetime received_at recorded_at zeit uhrzeit zeitstempel "
-    "datum_uhrzeit datum_zeit heure horodatage date_heure hora fecha_hora ora tnum datenum mjd",
+    "datum_uhrzeit datum_zeit heure horodatage date_heure hora fecha_hora ora",
     UNIX: "unix unix_time unixtime epoch epoch_time posix posix_time unix_s time_unix",
     SECONDS: "t_s t s sec seconds elapsed elapsed_s elapsed_seconds time_s time_sec time_seconds",
     DATE: "date date_utc utc_date gps_date date_gmt gmt_date datum fecha",
+    _COUNT: COUNT_NAMES,
 }
 _NAMES = {name: stem for stem, quantity in QUANTITIES.items() for name in quantity.names}
 _NAMES |= _OF_ERDDAP
@@ -213,7 +217,24 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
         else:
             column = chosen.pop(DATE)
             chosen[UTC] = replace(column, stem=UTC)
+    count = chosen.pop(_COUNT, None)
+    if count is not None and not {UTC, UNIX, CLOCK} & chosen.keys():
+        dated = count_of(count)
+        if SECONDS not in chosen or (dated is not None and dated.epoch):
+            chosen[UTC] = replace(count, stem=UTC)
     return chosen
+
+
+def count_of(column: Column) -> NamedCount | None:
+    """What the numbers of a column of time count, where its name says so; of a path, its last part."""
+    bare = without_brackets(column.name)[0]
+    return named_count(plain_name(bare)) or named_count(plain_name(re.split(r"[./]", bare)[-1]))
+
+
+def has_clock(names: Sequence[str]) -> bool:
+    """Whether a column holds dates and times, or Unix time; a count of days may be one part of a date."""
+    known = known_columns(names)
+    return UNIX in known or (UTC in known and count_of(known[UTC]) is None)
 
 
 def names_unit(column: Column) -> bool:
@@ -244,7 +265,7 @@ _SECONDS_OF_WEEK = frozenset(
 
 def week_columns(names: Sequence[str]) -> list[int]:
     """Places of the GPS week and its seconds; empty where one is missing or another time is there."""
-    if {UTC, UNIX} & known_columns(names).keys():
+    if has_clock(names):
         return []
     plain = [plain_name(without_brackets(name)[0]) for name in names]
     found = [

@@ -18,9 +18,9 @@ from navcore.io.choices import column_choice
 from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import (
     QUANTITIES,
-    UNIX,
     UTC,
     Column,
+    has_clock,
     known_columns,
     other_columns,
     plain_name,
@@ -97,7 +97,7 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             )
             raise InputError(Fault(where, "", None, allowed))
         clock, parts = week_columns(header), dict[str, int]()
-        if not clock and not {UTC, UNIX} & known_columns(header[:MOST_COLUMNS]).keys():
+        if not clock and not has_clock(header[:MOST_COLUMNS]):
             parts = part_columns([plain_name(without_brackets(name)[0]) for name in header[:MOST_COLUMNS]])
             clock = list(parts.values())
         named = [UTC if clock[:1] == [index] else name for index, name in enumerate(header)]

@@ -21,6 +21,7 @@ from navcore.io.hemispheres import is_named
 from navcore.io.mapped_times import MappedClock
 from navcore.io.series import Recording
 from navcore.io.table_times import Table
+from navcore.io.times.counts import GPS_EPOCH_S, gps_to_unix, zero_of
 
 
 def recognises(candidate: Candidate) -> bool:
@@ -46,6 +47,8 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
     raw = held.fetch(list(places.values()), clocks or [clock.index])
     size = rows_of(path.name, raw)
     rows, notes = np.arange(1, size + 1), list[str]()
+    if column_map is None or not column_map.time.zero:
+        notes += held.notes_of(clocks or [clock.index])
     if column_map is not None and column_map.time.stated:
         time_s, dated = mapped_times(path.name, [raw[index][0] for index in clocks], column_map, notes)
     else:
@@ -77,13 +80,24 @@ def mapped_times(
     """Times in s of the columns that a map names, and whether they are dated; notes what was assumed."""
     clock = MappedClock(column_map.time, column_map.decimal)
     if np.issubdtype(cells[0].dtype, np.datetime64):
-        return of_datetimes(cells[0]), True
+        return _of_dated(where, cells[0], column_map), True
     if column_map.time.numeric and cells[0].dtype.kind in "iufb":
         return clock.counted(cells[0].astype(float))
     texts = [" ".join(row) for row in zip(*(map(str, column.tolist()) for column in cells), strict=True)]
     found = clock.read(where, texts, range(1, len(texts) + 1))
     notes += clock.warnings()
     return found
+
+
+def _of_dated(where: str, cells: np.ndarray, column_map: ColumnMap) -> np.ndarray:
+    """Unix time in s of times that the file itself dates, which a map may call GPS time."""
+    time_s = of_datetimes(cells)
+    if not column_map.time.zero:
+        return time_s
+    if zero_of(column_map.time.zero) != GPS_EPOCH_S:
+        allowed = Text('must be left out, or "gps": the file gives the epoch of this column itself')
+        raise InputError(Fault(where, "time.epoch", column_map.time.zero, allowed))
+    return gps_to_unix(time_s - GPS_EPOCH_S)
 
 
 def of_datetimes(cells: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from scipy.io import netcdf_file, savemat
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.column_map import parse_map
 from navcore.io.recording import read_recording
 from navcore.io.series import Recording
 
@@ -212,3 +213,55 @@ def test_a_struct_that_unpacks_to_too_much_is_refused_before_it_is_held(tmp_path
     assert path.stat().st_size < 1 << 20
     with pytest.raises(InputError, match="unpacks to more than 256 MiB"):
         read_recording(path)
+
+
+GPS = T0 - 315964800.0 + K
+"""UTC by the count from the epoch of GPS time; the receiver's own clock is 18 s ahead."""
+EPOCH = "seconds since 1980-01-06 00:00:00"
+CLOCKS: dict[str, tuple[np.ndarray, dict[str, Any], str]] = {
+    "called GPS time": (GPS + 18.0, {"units": EPOCH, "long_name": "GPS time"}, "leap seconds removed"),
+    "called GPST": (GPS + 18.0, {"units": EPOCH, "time_system": "GPST"}, "leap seconds removed"),
+    "in milliseconds": (
+        (GPS + 18.0) * 1e3, {"units": "ms since 1980-01-06", "comment": "clock of the receiver (gps_time)"},
+        "leap seconds removed",
+    ),
+    "of the same epoch": (GPS, {"units": EPOCH, "long_name": "time"}, 'say time.epoch = "gps" by a map'),
+    "UTC by a GPS receiver": (GPS, {"units": EPOCH, "long_name": "GPS time, UTC"}, "taken as UTC"),
+    "of another epoch": (
+        T0 + K, {"units": "seconds since 1970-01-01", "long_name": "GPS time"}, "taken as UTC",
+    ),
+    "Julian date": ((T0 + K) / DAY + 2440587.5, {"units": "Julian date"}, "counts Julian date"),
+    "MJD": ((T0 + K) / DAY + 40587.0, {"units": "MJD"}, "counts MJD"),
+    "days of 4713 BC": ((T0 + K) / DAY + 2440587.5, {"units": "days since -4713-01-01 12:00:00"}, ""),
+    "Gregorian days of 4714 BC": (
+        (T0 + K) / DAY + 2440587.5, {"units": "days since -4713-11-24T12:00:00Z"}, "",
+    ),
+}  # fmt: skip
+
+
+@both
+@pytest.mark.parametrize("name", CLOCKS)
+def test_the_clock_of_a_variable_is_that_of_its_attributes(tmp_path: Path, kind: str, name: str) -> None:
+    values, attributes, said = CLOCKS[name]
+    path = tmp_path / "nav.nc"
+    WRITERS[kind](path, CF | {"time": (values, attributes)})
+    read = read_recording(path)
+    _is_the_ship(read)
+    assert any(said in told for told in read.warnings) or not said
+
+
+@both
+def test_a_map_calls_a_dated_variable_gps_time(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "nav.nc"
+    WRITERS[kind](path, CF | {"time": (GPS + 18.0, {"units": EPOCH})})
+    text = 'time = {{ column = "time", epoch = "{}" }}\n' + "".join(
+        f'[quantity.{stem}]\ncolumn = "{name}"\nunit = "deg"\n'
+        for stem, name in (
+            ("lat", "lat [degree_N]"),
+            ("lon", "lon [degree_E]"),
+            ("heading", "heading [degree]"),
+        )
+    )
+    _is_the_ship(read_recording(path, parse_map(text.format("gps"), "map")))
+    with pytest.raises(InputError, match="time.epoch = 'mjd': must be left out"):
+        read_recording(path, parse_map(text.format("mjd"), "map"))

@@ -11,6 +11,8 @@ import numpy as np
 
 from navcore.foundation.text import Text
 from navcore.io.column_names import QUANTITIES, known_columns, plain_name
+from navcore.io.times.counts import EPOCHS, GPS_EPOCH_S, gps_to_unix
+from navcore.io.times.named_counts import named_count
 from navcore.io.written_units import UNITS, unit_of
 
 _SINCE = re.compile(r"\s*([A-Za-z]{1,20})\s+(?:since|after|from)\s+(.{4,60})", re.IGNORECASE)
@@ -19,6 +21,13 @@ _DATE = re.compile(
     r"(?P<y>\d{1,4})-(?P<mo>\d{1,2})-(?P<d>\d{1,2})"
     r"(?:[T ]+(?P<h>\d{1,2})(?::(?P<m>\d{1,2})(?::(?P<s>\d{1,2}(?:\.\d*)?))?)?)?"
 )
+_JULIAN = re.compile(r"-471[23]-(?:0?1-0?1|11-24)(?:[T ]+12(?::?00?){0,2})?")
+"""Zero of Julian dates in the Julian or the Gregorian calendar."""
+_GPS = re.compile(r"(?<![a-z])gps(?:t|time)?(?![a-z])", re.IGNORECASE)
+_UTC = re.compile(r"\butc\b", re.IGNORECASE)
+_SAID_IN = ("long_name", "standard_name", "units", "comment", "description", "timescale", "time_scale",
+            "time_system", "time_reference")  # fmt: skip
+"""Attributes that may say that a time is GPS time."""
 _CALENDARS = frozenset(("", "standard", "gregorian", "proleptic_gregorian", "none"))
 
 
@@ -58,6 +67,9 @@ def epoch_of(attributes: Mapping[str, Any]) -> tuple[float, float] | None:
         Another calendar, or an epoch or unit that is not understood.
     """
     units = text_of(attributes.get("units", ""))
+    named = named_count(units)
+    if named is not None and named.epoch:
+        return UNITS["time"][named.unit], EPOCHS[named.epoch]
     match = _SINCE.fullmatch(units)
     if match is None:
         return None
@@ -65,16 +77,53 @@ def epoch_of(attributes: Mapping[str, Any]) -> tuple[float, float] | None:
     if calendar not in _CALENDARS:
         raise ValueError(Text("times of the calendar {calendar} are not read", calendar=calendar))
     unit = unit_of(plain_name(match[1]), "time")
+    if unit and (julian := _JULIAN.match(match[2].strip())) and _is_utc(match[2].strip()[julian.end() :]):
+        return UNITS["time"][unit], EPOCHS["jd"]
     date = _DATE.match(match[2].strip())
     rest = match[2].strip()[date.end() :] if date else ""
-    if not unit or date is None or (rest.strip() and _ZONE.fullmatch(rest) is None):
+    if not unit or date is None or not _is_utc(rest):
         raise ValueError(Text("the unit of time {units} is not understood", units=units))
     second = float(date["s"] or 0.0)
     moment = datetime(*(int(date[k] or 0) for k in ("y", "mo", "d", "h", "m")), tzinfo=UTC)
     return UNITS["time"][unit], moment.timestamp() + second
 
 
-def values_of(raw: np.ndarray, attributes: Mapping[str, Any]) -> np.ndarray:
+def _is_utc(rest: str) -> bool:
+    """Whether what stands behind a date is nothing, or UTC."""
+    return not rest.strip() or _ZONE.fullmatch(rest) is not None
+
+
+def _is_gps_time(name: str, attributes: Mapping[str, Any]) -> bool:
+    said = " ".join(
+        [plain_name(name).replace("_", " "), *(text_of(attributes.get(key, "")) for key in _SAID_IN)]
+    )
+    return _GPS.search(said) is not None and _UTC.search(said) is None
+
+
+def clock_note(name: str, attributes: Mapping[str, Any]) -> str:
+    """What is assumed of a variable of times with an epoch, GPS time or UTC; empty where nothing is."""
+    units = text_of(attributes.get("units", "")).strip()
+    try:
+        epoch = epoch_of(attributes)
+    except ValueError:  # said when the variable is read
+        return ""
+    if epoch is None:
+        return ""
+    if named_count(units) is not None:
+        return Text("{name} counts {units}", name=name, units=units)
+    if _is_gps_time(name, attributes) and epoch[1] == GPS_EPOCH_S:
+        return Text("{name} is GPS time, {units}: leap seconds removed", name=name, units=units)
+    if _is_gps_time(name, attributes) or epoch[1] == GPS_EPOCH_S:
+        return Text(
+            "{name}, {units}, is taken as UTC, as the CF conventions have it. If it is GPS time, whole leap "
+            'seconds ahead of UTC, say time.epoch = "gps" by a map',
+            name=name,
+            units=units,
+        )
+    return ""
+
+
+def values_of(raw: np.ndarray, attributes: Mapping[str, Any], name: str = "") -> np.ndarray:
     """Numbers of a variable, scaled, NaN where missing or out of range; times with an epoch.
 
     Returns
@@ -97,9 +146,12 @@ def values_of(raw: np.ndarray, attributes: Mapping[str, Any]) -> np.ndarray:
     if epoch is None:
         return values
     unit, zero = epoch
+    if zero == GPS_EPOCH_S and _is_gps_time(name, attributes):
+        values, unit, zero = gps_to_unix(values * unit), 1.0, 0.0
     found = np.full(values.shape, np.datetime64("NaT", "us"))
-    known = np.isfinite(values) & (np.abs(values) * unit < 1e11)
-    found[known] = (np.round((values[known] * unit + zero) * 1e6)).astype(np.int64).astype("datetime64[us]")
+    time_s = values * unit + zero
+    known = np.isfinite(time_s) & (np.abs(time_s) < 1e11)
+    found[known] = (np.round(time_s[known] * 1e6)).astype(np.int64).astype("datetime64[us]")
     return found
 
 

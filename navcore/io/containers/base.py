@@ -56,12 +56,15 @@ class Container:
         What it is, for people.
     names : list of str
         Names of the columns.
+    notes : dict
+        What is assumed of variables that are times, by the variable; empty where nothing is.
     """
 
     kind: str
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.notes: dict[str, str] = {}
         with refusing(path.name, self.kind):
             self.parts = self._parts()
         self.names = list(self.parts)
@@ -94,6 +97,10 @@ class Container:
         with refusing(self.path.name, self.kind):
             _refuse_size(self.path.name, rows, len(wanted), self._unpacked(wanted), most_cells)
             return self._read(wanted)
+
+    def notes_of(self, places: Sequence[int]) -> list[str]:
+        """What is assumed of the columns at some places."""
+        return [note for place in places if (note := self.notes.get(self._part(place).variable, ""))]
 
     def _part(self, index: int) -> Part:
         return self.parts[self.names[index]]

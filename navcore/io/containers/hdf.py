@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from navcore.io.columns import MOST_COLUMNS
-from navcore.io.containers.attributes import name_of, text_of, values_of
+from navcore.io.containers.attributes import clock_note, name_of, text_of, values_of
 from navcore.io.containers.base import LONGEST_TIME, Container, Part, by_column, of_one_length
 from navcore.io.containers.mat import NUMBERS, object_error
 
@@ -78,6 +78,7 @@ class HdfFile(_Hdf):
                     shown = ".".join((*path.split("/"), *([field] if field else [])))
                     name = name_of(shown, {} if field else dict(held.attrs))
                     kind = "string" if dtype.kind in "OSU" else str(dtype)[:40]
+                    self.notes[variable] = "" if field else clock_note(shown, dict(held.attrs))
                     parts |= by_column([(name, held.shape, dtype.kind in "iufb", kind)], variable)
         return of_one_length(parts)
 
@@ -94,7 +95,7 @@ class HdfFile(_Hdf):
                 one.decode("utf-8", "replace") if isinstance(one, bytes) else str(one) for one in raw.ravel()
             ]
             return np.array([text[: LONGEST_TIME + 1] for text in texts] or [""])
-        return values_of(raw, attributes) if attributes else raw
+        return values_of(raw, attributes, path) if attributes else raw
 
 
 def _is_netcdf(path: Path) -> bool:

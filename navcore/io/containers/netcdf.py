@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from navcore.io.columns import MOST_COLUMNS
-from navcore.io.containers.attributes import name_of, values_of
+from navcore.io.containers.attributes import clock_note, name_of, values_of
 from navcore.io.containers.base import Container, Part, by_column, of_one_length
 
 
@@ -27,7 +27,8 @@ class NetcdfFile(Container):
                 raw = np.array(variable[:]) if variable.shape else np.array(variable.getValue())
                 number = raw.dtype.kind in "iufb"
                 if number:
-                    self._raw[name] = values_of(raw, attributes)
+                    self._raw[name] = values_of(raw, attributes, name)
+                    self.notes[name] = clock_note(name, attributes)
                 parts |= by_column([(name_of(name, attributes), raw.shape, number, str(raw.dtype))], name)
         return of_one_length(parts)
 

@@ -50,6 +50,12 @@ EPOCHS = {
 """Unix time of the zero of known counts, s, by name. Those of GPS time have no leap seconds."""
 
 
+def epoch_words(key: str) -> str:
+    """Zero of a known count, for people: a date, or what the count is called."""
+    named = {"matlab": Text("the year 0 of MATLAB"), "jd": Text("noon of 4713 BC, Julian")}
+    return named.get(key) or moment_text(EPOCHS[key]).removesuffix("T00:00:00Z")
+
+
 class Count(NamedTuple):
     """Hypothesis: numbers that count a unit from an epoch.
 
@@ -88,8 +94,12 @@ _NAMED = {
 
 
 def _counts(unit: str, *epochs: tuple[str, str]) -> tuple[Count, ...]:
-    name = Text("days") if unit == "day" else _NAMED[unit]
-    return tuple(Count(words, UNITS["time"][unit], name, EPOCHS[key]) for key, words in epochs)
+    return tuple(Count(words, UNITS["time"][unit], unit_words(unit), EPOCHS[key]) for key, words in epochs)
+
+
+def unit_words(unit: str) -> str:
+    """Unit of time, for people."""
+    return Text("days") if unit == "day" else _NAMED[unit]
 
 
 _UNIX = {unit: _counts(unit, ("unix", "1970"))[0] for unit in ("s", "ms", "us", "ns")}
@@ -97,8 +107,8 @@ _DAYS = _counts(
     "day",
     ("excel", "1899-12-30"),
     ("mjd", "1858-11-17"),
-    ("matlab", Text("the year 0 of MATLAB")),
-    ("jd", Text("noon of 4713 BC, Julian")),
+    ("matlab", epoch_words("matlab")),
+    ("jd", epoch_words("jd")),
 )
 """Counts that differ in size, so that the size says which."""
 _FURTHER_DAYS = _counts("day", ("unix", "1970"), ("1950", "1950"), ("gps", "1980-01-06"), ("2000", "2000"))
@@ -189,7 +199,7 @@ def _in_unit(values: np.ndarray, known: np.ndarray, unit: str) -> Times:
         return Times(seconds, False)
     if is_plausible(np.array([size]))[0]:
         return Times(seconds, True)
-    name = Text("days") if unit == "day" else _NAMED[unit]
+    name = unit_words(unit)
     zeros = (*_DAYS, *_FURTHER_DAYS) if unit == "day" else _FURTHER[:_OF_SECONDS]
     counts = [Count(one.name, scale, name, one.zero_s) for one in zeros]
     return _only(values, known, [one for one in counts if _fits(one, known)]) or Times(seconds, True)

@@ -8,7 +8,8 @@ _NAMES = {
     "year": "year yyyy yy yr utc_year jahr annee ano",
     "month": "month mon mm mo utc_month monat mois mes",
     "day": "day dd utc_day tag jour dia",
-    "doy": "doy day_of_year jday julian_day yday yearday year_day jd_day tag_des_jahres",
+    "doy": "doy day_of_year dayofyear jday julian_day julday jul_day yday yearday year_day jd_day "
+    "decimal_doy decimal_day decimal_yearday tag_des_jahres",
     "hour": "hour hours hh hr utc_hour stunde",
     "minute": "minute minutes min mi mm nn utc_minute",
     "second": "second seconds sec ss s utc_second sekunde seconde",
