@@ -12,12 +12,12 @@ from tyro.conf import Positional, UseAppendAction, arg
 from navcore.foundation.answers import Answer
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.inputs import noting
-from navcore.questions.base import Option, Question
+from navcore.questions.base import Option, Question, flag_of
 from schuler_bench.cli.terminal import emit_result, say
 
 _SET = "Override one field of the scenario first, e.g. method.0.network.xi=0.5."
 _OUT = {"file": "File for {what}.", "folder": "Folder for {what}."}
-FORCE = "Let --out replace a file that this command has not written, or that was edited since."
+FORCE = "Let {flag} replace a file that this command has not written, or that was edited since."
 _METAVARS = {"file": "FILE", "folder": "DIR"}
 
 
@@ -43,16 +43,16 @@ class AskingCommand:
         return 3 if answer.failed or not answer.complete else 0
 
     def _free(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> None:
-        """Refuse a place for ``--out`` before the work."""
-        if given.get("out") is not None:
-            question.require_free(given["out"], reads, force=given.get("force", False))
+        """Refuse a place for what it writes before the work."""
+        if (place := given.get(self.asked.place)) is not None:
+            question.require_free(place, reads, force=given.get("force", False))
 
     def _written(
         self, question: Question, answer: Answer, given: Mapping[str, Any], reads: list[Any]
     ) -> None:
-        """Write what ``--out`` asks for."""
-        if given.get("out") is not None:
-            question.write(answer, given["out"], reads, force=given.get("force", False))
+        """Write what ``--out``, or the option in its place, asks for."""
+        if (place := given.get(self.asked.place)) is not None:
+            question.write(answer, place, reads, force=given.get("force", False))
 
     def _answered(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> Answer:
         """Answer, and show the progress."""
@@ -105,9 +105,9 @@ def command_of(
         rows.append(("set", UseAppendAction[_with(tuple[str, ...], "KEY=VALUE", _SET)], ()))
     if question.writes:
         words = _OUT[question.writes].format(what=question.written)
-        rows.append(("out", _with(Path | None, _METAVARS[question.writes], words), None))
+        rows.append((question.place, _with(Path | None, _METAVARS[question.writes], words), None))
     if question.writes == "file":
-        rows.append(("force", Annotated[bool, arg(help=FORCE)], False))
+        rows.append(("force", Annotated[bool, arg(help=FORCE.format(flag=flag_of(question.place)))], False))
     rows += more
     rows.append(("json", Annotated[bool, arg(help="Print one JSON document.")], False))
     rows.append(("quiet", Annotated[bool, arg(help="No progress bar.")], False))

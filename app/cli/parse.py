@@ -34,7 +34,7 @@ _COMMANDS = {
     "study": command_of(QUESTIONS["study"], OnCluster, SCHEDULER),
     "bench": BenchCommand,
 }
-_PLACES = ("--out", "--write-map")
+_PLACES = ("--out", "--scenario", "--write-map")
 _NO_INT = "invalid literal for int() with base 10: "
 
 

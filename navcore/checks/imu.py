@@ -22,6 +22,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.io.column_map import ColumnMap, read_map
 from navcore.io.column_names import known_columns
+from navcore.io.compressed import head_of
 from navcore.io.containers.opening import is_container, open_container
 from navcore.io.imu_table import is_imu_names, is_imu_table
 from navcore.io.source import require_file
@@ -33,6 +34,7 @@ _GRAVITY = 9.76, 9.84
 _FORCE_ERROR = 0.02
 _SLOWEST_HZ, _FASTEST_HZ = 10.0, 2500.0
 _STEADY = 0.8, 1.25
+_SNIFFED_BYTES = 8192
 
 
 def recognises(path: Path, head: bytes) -> bool:
@@ -41,6 +43,14 @@ def recognises(path: Path, head: bytes) -> bool:
         return is_imu_names(open_container(path).names)
     text = head.decode("utf-8", errors="replace")
     return (is_psins(text) and _numbers_below(text)) or is_imu_table(text)
+
+
+def is_imu(file: str | os.PathLike[str], mapped: str | os.PathLike[str] | None = None) -> bool:
+    """Whether a file holds a recorded IMU, by itself or by a map; raises `InputError` where it is missing."""
+    if mapped is not None:
+        return read_map(mapped).is_imu
+    path = require_file(file)
+    return recognises(path, head_of(path, _SNIFFED_BYTES))
 
 
 def _numbers_below(text: str) -> bool:

@@ -139,6 +139,8 @@ class Question(Parameters):
         Of the function, for its docstring.
     writes, written : str
         What ``--out`` is ("file", "folder" or ""), and what is written there.
+    place : str
+        Name of the option in the place of ``--out``.
     files : tuple of str
         Names of the files that it writes; of a "file" its kind, for the user names it.
     keeps : bool
@@ -160,6 +162,7 @@ class Question(Parameters):
     takes: ClassVar[str] = "Scenario, or str"
     example: ClassVar[str] = ""
     writes: ClassVar[Writes] = ""
+    place: ClassVar[str] = "out"
     written: ClassVar[str] = ""
     files: ClassVar[tuple[str, ...]] = ()
     keeps: ClassVar[bool] = True
@@ -246,7 +249,7 @@ class Question(Parameters):
         if self.writes == "folder":
             require_folder(out, self.files, kept)
         else:
-            require_file(out, self._command, kept, force=force)
+            require_file(out, self._command, kept, force=force, option=flag_of(self.place))
 
     def write(
         self, answer: Answer, out: Path, reads: Iterable[PathLike] = (), *, force: bool = False
@@ -260,7 +263,7 @@ class Question(Parameters):
                     (hidden / name).write_bytes(utf8(text))
         else:
             (text,) = texts.values()
-            write_file(out, text, self._command, kept, force=force)
+            write_file(out, text, self._command, kept, force=force, option=flag_of(self.place))
 
     def texts(self, answer: Answer) -> dict[str, str]:
         """Return what ``--out`` asks for: a text by the name of each of ``files``."""

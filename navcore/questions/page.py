@@ -9,7 +9,7 @@ from pathlib import Path
 from navcore.foundation.markdown import markdown_table
 from navcore.foundation.parameters import allowed_range
 from navcore.questions import QUESTIONS
-from navcore.questions.base import Option, Question
+from navcore.questions.base import Option, Question, flag_of
 from navcore.questions.functions import name_of
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "interface.md"
@@ -20,7 +20,7 @@ _ALL = {
 _LAST = (("--json", "prints one JSON document"), ("--quiet", "shows no progress bar"))
 
 
-_FORCE = "lets `--out` replace a file that the command has not written, or that was edited since"
+_FORCE = "lets `{flag}` replace a file that the command has not written, or that was edited since"
 
 
 def section() -> str:
@@ -42,12 +42,12 @@ def _parts() -> Iterator[str]:
         out = f"{question.writes} for {question.written}"
         rows += [[f"`{flag}`", "", words] for flag, words in _ALL.get(question.subject, ())]
         rows += (
-            [[f"`--out {'FILE' if question.writes == 'file' else 'DIR'}`", "", out]]
+            [[f"`{flag_of(question.place)} {'FILE' if question.writes == 'file' else 'DIR'}`", "", out]]
             if question.writes
             else []
         )
         if question.writes == "file":
-            rows.append(["`--force`", "", _FORCE])
+            rows.append(["`--force`", "", _FORCE.format(flag=flag_of(question.place))])
         rows += [[f"`{flag}`", "", words] for flag, words in _LAST]
         yield markdown_table(["option", "default", "meaning"], rows)
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from navcore.fitting.log import LogAlongTrack
 from navcore.foundation.text import Text
-from navcore.sensors.fit import LogAlongTrack
 from navcore.sensors.true_state import horizontal_state, to_ship
 from schuler_bench.plots import style
 from schuler_bench.plots.svg_axes import Box, Curve, axes, key, word
@@ -25,7 +25,7 @@ def log_svg(log: LogAlongTrack, delay_s: float) -> str:
     delay_s : float
         Of the log; the ship's speed is that of so long before.
     """
-    known = log.time_s >= delay_s
+    known = log.known(delay_s)
     time_s, reading = log.time_s[known], log.reading[known, 1]
     ship = to_ship(*horizontal_state(log.truth, time_s - delay_s))[:, 1]
     minutes, *curves = (_means(values) for values in (time_s / 60.0, ship, reading, reading - ship))

@@ -1,6 +1,7 @@
 """Tab "Log": the reference velocity, its errors, events and outages."""
 
 from navcore.engine.correcting import corrected, correction_of
+from navcore.fitting.recorded import FittedLog, can_fit, fit_of, with_fitted_log
 from navcore.foundation.text import Text
 from navcore.questions.correction import CorrectionQuestion
 from navcore.scenario.model import Scenario
@@ -8,7 +9,6 @@ from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import RECORDED_ONLY, Outage, Reference
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec
-from schuler_bench.session.log_fit import FittedLog, can_fit, fit_lines, fit_of, with_fitted_log
 from schuler_bench.shell import notices
 from schuler_bench.shell.palette import COPY_LOG, PASTE
 from schuler_bench.shell.view import FieldsView, Tab, if_user
@@ -19,7 +19,7 @@ ADD_OUTAGE, REMOVE_OUTAGE = Text("add outage"), Text("remove outage")
 COPY_TEXT, PASTE_TEXT = Text("copy as TOML"), Text("paste TOML")
 FIT, USE_FIT = Text("Fit this log's error"), Text("Simulate a log with this error")
 _FIT_TOLD = Text(
-    "Compares the recorded log with the recorded track: delay, bias, noise and drift of its error."
+    "Compares the recorded log with the recorded track: clock, bias, scale, current, tide, noise and drift."
 )
 _USE_TOLD = Text(
     "Replaces the recorded log by a simulated one with the fitted error, of any length. Undo brings it back."
@@ -39,7 +39,7 @@ class LogView(FieldsView):
 
     title = Text("Log")
     place = "edit"
-    asks = ("correction",)
+    asks = ("correction", "fit")
     places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
 
     def build(self, tab: Tab) -> None:
@@ -189,7 +189,7 @@ class LogView(FieldsView):
 
 def _told(fitted: FittedLog) -> str:
     """Result of the fit, and the log against the track."""
-    return notices.note(fit_lines(fitted), "info") + log_svg(fitted.log, fitted.fit.delay_s)
+    return fitted.html() + log_svg(fitted.log, fitted.fit.late_s)
 
 
 def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:
