@@ -60,13 +60,14 @@ def budget(
     True
     """
     ship = Ship(scenario)
+    scenario = ship.scenario
     unstated = assumed_zero(scenario, steady)
     if steady:
-        found = steady_budget(scenario, ship.model)
+        found = steady_budget(scenario, ship.model, ship.recordings)
         pairs = zip(found.methods, scenario.method, strict=True)
         methods = tuple(_with_growth(ship, result, method) for result, method in pairs)
         return replace(found, methods=methods, assumed_zero=unstated)
-    left_out = _warnings(scenario)
+    left_out = _warnings(ship)
     untold = any(column.source not in TOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
 
@@ -101,7 +102,7 @@ def budget(
         floor = least.result()
     report(len(scenario.method), 1.0)
     if floor is None:
-        reason = steady_floor(ship.model, scenario.omega_s).reason
+        reason = ship.recordings.no_floor or steady_floor(ship.model, scenario.omega_s).reason
         return Budget(False, Entry(Figures(), Figures()), reason, None, methods, unstated)
     found = with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
     return replace(found, assumed_zero=unstated)
@@ -128,9 +129,9 @@ def _of_filter(scenario: Scenario, method: Method, own: Series, untold: bool) ->
     return Series(own.t_s, {"told": own.total, **sources}, total, given), note
 
 
-def _warnings(scenario: Scenario) -> tuple[str, ...]:
-    warnings = [*unmodelled_warnings(scenario)]
-    if scenario.alignment.kind == "compass":
+def _warnings(ship: Ship) -> tuple[str, ...]:
+    warnings = [*ship.recordings.notes, *unmodelled_warnings(ship.scenario)]
+    if ship.scenario.alignment.kind == "compass":
         warnings.append(Text("alignment: what biases leave after it is in the budget, its own noise is not"))
     return tuple(warnings)
 

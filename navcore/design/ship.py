@@ -1,6 +1,6 @@
 """Inputs that all methods share in budget, bands and tuning: sensors, motion, responses, floor."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from navcore.design.along import Along, along
@@ -9,6 +9,7 @@ from navcore.design.course import MOST_INTERVALS, Course, course, motion_steps
 from navcore.design.figures import Figures, Series, mean_figures
 from navcore.design.filter import filter_variance
 from navcore.design.floor import steady_floor
+from navcore.design.modelled import Modelled, modelled
 from navcore.design.scheduled import scheduled_times
 from navcore.engine.environment import stretches_of
 from navcore.motion.truth import Stretches
@@ -24,7 +25,8 @@ class Ship:
     Attributes
     ----------
     scenario : Scenario
-        Complete and checked; a strapdown scenario counts as the error model along its motion.
+        Complete and checked; a strapdown scenario counts as the error model along its motion. A recorded log
+        is replaced by a simulated one with the error that is fitted to it (`navcore.design.modelled`).
     along_run : bool
         Root mean squares over the scenario's run, else in the steady state at rest.
     intervals : int
@@ -32,12 +34,25 @@ class Ship:
     drawn : bool
         Biases and initial errors count as they are drawn for the seeds of a design, by their standard
         deviation; else those that are given as numbers count as they are in a run.
+    given : Scenario
+        As it was given, with its recordings.
     """
 
     scenario: Scenario
     along_run: bool = True
     intervals: int = MOST_INTERVALS
     drawn: bool = False
+    given: Scenario = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Put the fitted log in the place of a recorded one."""
+        object.__setattr__(self, "given", self.scenario)
+        object.__setattr__(self, "scenario", self.recordings.scenario)
+
+    @cached_property
+    def recordings(self) -> Modelled:
+        """What the recordings of the scenario count as."""
+        return modelled(self.given)
 
     @cached_property
     def model(self) -> StochasticModel:
@@ -66,14 +81,17 @@ class Ship:
 
     @cached_property
     def floor_series(self) -> Series | None:
-        """Covariance of a Kalman filter along the run; None where it is told of no error, or has no log."""
-        if self.model.silent or not self.model.log:
+        """Covariance of a Kalman filter along the run; None where it is told of no error, or has no log.
+
+        None too where a recording has no model, so that its error counts as 0.
+        """
+        if self.recordings.no_floor or self.model.silent or not self.model.log:
             return None
         return Series(self.course.t_s, {}, filter_variance(self.scenario, self.course, self.model))
 
     def floor(self, method: Method) -> Figures:
         """Least that any causal linear damping with the log can reach; empty for a method without the log."""
-        if not method.reads_log:
+        if not method.reads_log or self.recordings.no_floor:
             return Figures()
         if not self.along_run:
             least = steady_floor(self.model, self.scenario.omega_s)

@@ -47,7 +47,7 @@ def contributions(
     cancelled : callable
         When it says True the sources not yet run are left out.
     """
-    scenario = ship.scenario
+    scenario = ship.given
     parts = (*scenario.imu.all_parts(), *scenario.reference.all_parts())
     rounded = any(np.any(part.lsb) for part in parts)
     if scenario.reference.kind != "file" and not rounded and not no_covariance(scenario, method):

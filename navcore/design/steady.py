@@ -13,6 +13,7 @@ from navcore.design.figures import Entry, Figures, total_of
 from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import Level, constant_part, decays, level, line_part, steady_parts
+from navcore.design.modelled import Modelled
 from navcore.design.result import Budget, MethodBudget, with_floor
 from navcore.design.sampled import SampledLevel, sampled_level, sampled_parts, timing_of
 from navcore.design.unmodelled import unmodelled_warnings
@@ -22,9 +23,14 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 
-def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
-    """Steady state of one level channel at rest; ``model`` may differ from that of the scenario."""
-    least, unmodelled = steady_floor(model, scenario.omega_s), unmodelled_warnings(scenario, steady=True)
+def steady_budget(scenario: Scenario, model: StochasticModel, recordings: Modelled | None = None) -> Budget:
+    """Steady state of one level channel at rest; ``model`` may differ from that of the scenario.
+
+    ``recordings`` says what the recordings count as; None where there are none.
+    """
+    told = Modelled(scenario) if recordings is None else recordings
+    least = Floor(None, None, told.no_floor) if told.no_floor else steady_floor(model, scenario.omega_s)
+    unmodelled = (*told.notes, *unmodelled_warnings(scenario, steady=True))
     methods = []
     for method in scenario.method:
         found = _STEADY[method.kind.covering](scenario, method, model, least, unmodelled)

@@ -314,7 +314,7 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
     if len(search.objective.terms) == 1 and kind is not None:
         floors = [getattr(one.ship.floor(one.method), kind.figure) for one in settings]
         floor = max((value for value in floors if value is not None), default=None)
-    scenario = search.ships[0].scenario
+    scenario = search.ships[0].given
     index = search.varied[0].method
     methods = tuple(settings[0].method if i == index else method for i, method in enumerate(scenario.method))
     return Tuned(
@@ -341,4 +341,5 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
 def _unseen(setting: Setting) -> Iterator[str]:
     """Whole system and unmodelled errors, of which a measure of one channel says nothing."""
     yield from growing(setting)
+    yield from setting.ship.recordings.notes
     yield from unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run)

@@ -8,7 +8,7 @@ from navcore.sensors.base import ErrorPart, modelled_drift
 
 
 def unmodelled_warnings(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
-    """Say which recordings count as free of error, and which errors of the scenario are left out.
+    """Say which errors of the scenario are left out; of recordings `navcore.design.modelled` does.
 
     Parameters
     ----------
@@ -21,14 +21,8 @@ def unmodelled_warnings(scenario: Scenario, steady: bool = False) -> tuple[str, 
     parts: list[tuple[str, ErrorPart]] = []
     if scenario.reference.kind == "log":
         parts += [("reference", part) for part in scenario.reference.all_parts()]
-    elif scenario.reference.kind == "file":
-        warnings.append(
-            Text("reference.file: a recorded log has no stochastic model and counts as free of error")
-        )
     if scenario.imu.file is None:
         parts += [("imu", part) for part in scenario.imu.all_parts()]
-    else:
-        warnings.append(Text("imu.file: a recorded IMU has no stochastic model and counts as free of error"))
     for block, part in parts:
         own = (other for _, other in parts if other.sensor == part.sensor)
         second_drift = part.markov[0] > 0.0 and part is not modelled_drift(own)
