@@ -13,6 +13,7 @@ from navcore.foundation.answers import Answer
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.inputs import noting
 from navcore.questions.base import Option, Question, flag_of
+from schuler_bench.cli.codes import DONE, STOPPED, WRONG_INPUT
 from schuler_bench.cli.terminal import emit_result, say
 
 _SET = "Override one field of the scenario first, e.g. method.0.network.xi=0.5."
@@ -33,6 +34,9 @@ class AskingCommand:
         with noting() as reads:
             question = self.asked.ask(self._fields(given))
         self._free(question, given, reads)
+        refused = [*question.refusals()]
+        for text in refused:
+            say(f"{self._source(given)}: {text}")
         answer = self._answered(question, given, reads)
         self._written(question, answer, given, reads)
         emit_result(given["json"], answer.document(), answer.lines)
@@ -40,7 +44,14 @@ class AskingCommand:
             say(f"{self._source(given)}: {text}")
         if not answer.complete:
             say(f"{self._source(given)}: stopped; {answer.so_far}")
-        return 3 if answer.failed or not answer.complete else 0
+        if answer.failed or not answer.complete:
+            return STOPPED
+        # a method of the scenario itself is wrong input, though the others were asked
+        return (
+            WRONG_INPUT
+            if refused and self.asked.subject == "scenario" and question.scenario.refused
+            else DONE
+        )
 
     def _free(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> None:
         """Refuse a place for what it writes before the work."""
@@ -78,7 +89,8 @@ class AskingCommand:
             return fields
         if "where" in self.asked.model_fields:
             fields["where"] = subject
-        return fields | {self.asked.subject: load(subject, given["set"]) if "set" in given else subject}
+        loaded = load(subject, given["set"], apart=self.asked.apart) if "set" in given else subject
+        return fields | {self.asked.subject: loaded}
 
 
 def command_of(

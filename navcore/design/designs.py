@@ -83,7 +83,8 @@ def designs(
         raise _too_early(seeds)
     ship = Ship(scenario, True, TUNING_INTERVALS, drawn=True)
     shares = tuple(sorted(shares_of(ship, methods, found), key=lambda share: share.order))
-    result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
+    left_out = (*((one.name, one.reason) for one in scenario.refused), *left_out)
+    result = Designs(len(found), shares, assumed_zero(scenario), left_out, stopped=stopped)
     return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
 
 

@@ -1,4 +1,4 @@
-"""Recordings in budget, floor and tuning: a recorded log counts with its fitted error, or there is no floor."""
+"""Recordings in budget, floor and tuning: a recorded log has its fitted error, else there is no floor."""
 
 from typing import NamedTuple
 
@@ -54,8 +54,8 @@ def _with_log(scenario: Scenario) -> tuple[Scenario, str, str]:
             why = error.faults[0].allowed
         else:
             note = Text(
-                "reference.file: the recorded log counts with its fitted error (schuler fit): noise {noise:.3g} "
-                "m/s, drift {drift:.3g} m/s over {tau_s:.3g} s",
+                "reference.file: the recorded log counts with its fitted error (schuler fit): "
+                "noise {noise:.3g} m/s, drift {drift:.3g} m/s over {tau_s:.3g} s",
                 noise=fit.noise.value,
                 drift=fit.drift.value,
                 tau_s=fit.drift_tau_s.value,

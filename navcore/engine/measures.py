@@ -71,6 +71,10 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
         radians; ``requirements`` where the scenario has any: each with its value, its verdict, the standard
         deviations that the run draws as 0, and the share of seeds that meet it; ``verdict`` on all of them.
         An infinite value, or one that is not a number, is None.
+        radians; ``requirements`` where the scenario has any: each with its value, whether
+        it is met, the standard deviations that the run draws as 0, and the share of seeds that meet it. An
+        infinite value, or one that is not a number, is None. ``refused`` names the methods that the rest of
+        the scenario refuses, where there are any, with the reason.
 
     Examples
     --------
@@ -79,6 +83,7 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
     >>> round(document["methods"][1]["loop"]["settling_s"] / 60)
     53
     """
+    refused = run.scenario.refused
     return {
         "schema": SCHEMA,
         "scenario_sha256": run.scenario_sha256,
@@ -90,6 +95,7 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
             _method(method) | _requirements(run.scenario, method, shares[k] if shares else None)
             for k, method in enumerate(run.methods)
         ],
+        **({"refused": [one.as_dict() for one in refused]} if refused else {}),
     }
 
 

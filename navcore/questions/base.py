@@ -32,7 +32,7 @@ Kind = Literal["flag", "whole", "number", "choice", "text"]
 Writes = Literal["", "file", "folder"]
 
 
-def loaded(value: Any) -> Any:
+def loaded(value: Any, *, apart: bool = False) -> Any:
     """Scenario of a name or file; imported only now, so that a command line is read at once."""
     from navcore.scenario.file import load
     from navcore.scenario.model import Scenario
@@ -40,7 +40,7 @@ def loaded(value: Any) -> Any:
     if isinstance(value, Scenario):
         return value
     if isinstance(value, str | Path):
-        return load(str(value))
+        return load(str(value), apart=apart)
     raise InputError(Fault("", "", value, Text("must be a scenario, the name of a preset, or a TOML file")))
 
 
@@ -149,6 +149,8 @@ class Question(Parameters):
         Nobody waits for it: it is answered only beside everything else, never on a cluster.
     still_s : float
         Where it follows the page: time for which nothing newer must have been asked before it is begun.
+    apart : bool
+        Methods that the rest of the scenario refuses are left out, and it is asked of the others.
     stopped : str
         What is said where it was stopped and nothing was found.
     scenario : Scenario
@@ -168,6 +170,7 @@ class Question(Parameters):
     keeps: ClassVar[bool] = True
     spare: ClassVar[bool] = False
     still_s: ClassVar[float] = 0.0
+    apart: ClassVar[bool] = False
     stopped: ClassVar[str] = Text("Stopped: nothing was found.")
     scenario: Asked = option(..., metavar="SCENARIO", help=Text("Name of a preset, or a TOML file."))
 
@@ -181,7 +184,10 @@ class Question(Parameters):
             One fault a field; it is named as on the command line.
         """
         try:
-            return cls.model_validate(dict(data))
+            given = dict(data)
+            if cls.apart and isinstance(given.get("scenario"), str):
+                given["scenario"] = loaded(given["scenario"], apart=True)
+            return cls.model_validate(given)
         except ValidationError as error:
             raise InputError(_faults(error, cls, dict(data))) from None
         except UnicodeEncodeError as error:  # a path that is no UTF-8, which pydantic cannot quote
@@ -219,6 +225,10 @@ class Question(Parameters):
     def load(self) -> Scenario:
         """Scenario whose size says what it takes, and whose files must be at hand where it is answered."""
         return self.scenario
+
+    def refusals(self) -> Iterable[str]:
+        """Give methods that are not asked of, or not everywhere, and why: told before the work."""
+        return [one.line for one in self.scenario.refused] if self.apart else []
 
     def recordings(self) -> list[str]:
         """Return the paths of the recordings on which its scenarios and studies run, and of their maps."""

@@ -32,6 +32,7 @@ class DesignQuestion(Question):
 >>> found = designs(load("zha-fast", ["run.duration_h=1", *limit]), seeds=4, as_set=True)
 >>> found.seeds, len(found.methods)
 (4, 3)"""
+    apart: ClassVar[bool] = True
     id: Literal["design"] = "design"
     seeds: int | None = quantity(
         None,

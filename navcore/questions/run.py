@@ -91,6 +91,7 @@ class Ran(Answer):
             seed=settings.seed,
             steps=run.computed_on,
         )
+        yield from (one.line for one in run.scenario.refused)
         yield Table(_LOOP, tuple(map(_loop_row, run.methods)))
         for key, title in _STATISTICS.items():
             heads = (Column(title), *(Column(error.symbol, error.kind.unit) for error in _SHOWN))
@@ -155,6 +156,7 @@ class RunQuestion(Question):
 >>> found = run(load("zha-fast", ["run.duration_h=0.1"]))
 >>> found.run.status, found.failed
 ('ok', False)"""
+    apart: ClassVar[bool] = True
     id: Literal["run"] = "run"
     format: Literal["parquet", "csv"] = option("parquet", help=Text("Of the time series."))
 

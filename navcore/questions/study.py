@@ -73,6 +73,10 @@ class StudyQuestion(Question):
             self._plan = Plan(self.study, self.where)
         return self._plan
 
+    def refusals(self) -> tuple[str, ...]:
+        """Give methods that the scenario, or a value of a factor, refuses."""
+        return self.plan.refused
+
     @property
     def load(self) -> "Scenario":
         """Scenario of the first setting."""

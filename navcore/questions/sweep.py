@@ -1,5 +1,6 @@
 """Sweep: a study of one factor at a time: latitude, error of the log, sensor grade, sea."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from navcore.foundation.errors import Fault, StoppedError
@@ -26,6 +27,7 @@ class SweepQuestion(Question):
 >>> found = sweep(load("zha-fast", ["run.duration_h=0.1"]), ["log_bias"])
 >>> found.found["log_bias"].values
 (0.0, 0.1, 0.2, 0.5, 1.0)"""
+    apart: ClassVar[bool] = True
     id: Literal["sweep"] = "sweep"
     over: tuple[Swept, ...] = option(
         ("latitude", "log_bias", "grade", "sea"),
@@ -33,6 +35,12 @@ class SweepQuestion(Question):
         metavar="QUANTITY",
         help=Text("What is varied; by default each."),
     )
+
+    def refusals(self) -> Iterable[str]:
+        """Give methods that the scenario, or a value of what is swept, refuses."""
+        from navcore.study.sweep import refusals
+
+        return (*super().refusals(), *refusals(self.scenario, self.over))
 
     def answer(self, progress: Progress | None = None, cancelled: Cancelled | None = None) -> "Sweeps":
         """Sweep."""

@@ -36,7 +36,7 @@ def presets() -> dict[str, Path]:
     return {path.stem: path for path in sorted(asset_path("presets").glob("*.toml"), key=lambda p: p.stem)}
 
 
-def load(source: str, overrides: Iterable[str] = ()) -> Scenario:
+def load(source: str, overrides: Iterable[str] = (), *, apart: bool = False) -> Scenario:
     """Read a scenario: a preset by its name, or a TOML file.
 
     Parameters
@@ -46,6 +46,8 @@ def load(source: str, overrides: Iterable[str] = ()) -> Scenario:
     overrides : iterable of str
         Fields to change, as ``KEY=VALUE`` with a dotted key: ``method.0.network.xi=0.5``. The value is read
         as TOML, else as a number however it is written (``0,5``), and, where it is neither, as text.
+    apart : bool
+        Leave out methods that the rest of the scenario refuses (`Scenario.refused`), as long as one is left.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def load(source: str, overrides: Iterable[str] = ()) -> Scenario:
     >>> load("zha-fast", ["site.lat_deg=45"]).site.lat_deg
     45.0
     """
-    return Scenario.parse(read(source, overrides), source)
+    return Scenario.parse(read(source, overrides), source, apart=apart)
 
 
 def read(source: str, overrides: Iterable[str] = ()) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import PrivateAttr, ValidationError
 
 from navcore.damping import GYROCOMPASS, WHOLE
 from navcore.foundation.errors import Fault, InputError
@@ -19,6 +19,7 @@ from navcore.scenario.fields import ScenarioFields
 from navcore.scenario.method import Method
 from navcore.scenario.needs import need_faults
 from navcore.scenario.requirement import clause_faults
+from navcore.scenario.refused import Refused, refused_methods
 from navcore.scenario.strapdown_faults import strapdown_faults
 
 MAX_STEPS = 3_000_000
@@ -30,11 +31,32 @@ class Scenario(ScenarioFields):
     """A complete, checked scenario.
 
     Build it with `Scenario.parse` or `navcore.scenario.file.load`.
+
+    Attributes
+    ----------
+    refused : tuple of Refused
+        Methods that were left out when it was read, because the rest of the scenario refuses them.
     """
 
+    _refused: tuple[Refused, ...] = PrivateAttr(default=())
+
+    @property
+    def refused(self) -> tuple[Refused, ...]:
+        """Methods that were left out."""
+        return self._refused
+
     @classmethod
-    def parse(cls, data: dict[str, Any], where: str = "") -> Scenario:
+    def parse(cls, data: dict[str, Any], where: str = "", *, apart: bool = False) -> Scenario:
         """Validate a mapping as read from TOML; names are filled in and made unique.
+
+        Parameters
+        ----------
+        data : dict
+            Blocks of the scenario.
+        where : str
+            Named in faults.
+        apart : bool
+            Leave out methods that the rest of the scenario refuses, as long as one is left.
 
         Raises
         ------
@@ -50,8 +72,15 @@ class Scenario(ScenarioFields):
             raise InputError(faults_from(error, cls, data, where)) from None
         scenario = scenario.with_sensors()
         faults = list(scenario.faults())
+        refused = refused_methods(scenario) if apart and faults else ()
+        if refused:
+            places = {one.place for one in refused}
+            left = tuple(one for place, one in enumerate(scenario.method) if place not in places)
+            scenario = scenario.model_copy(update={"method": left})
+            faults = list(scenario.faults()) if left else faults
         if faults:
             raise InputError(faults).located(where)
+        scenario._refused = refused
         methods = tuple(m.model_copy(update={"name": m.label()}) for m in scenario.method)
         return scenario.model_copy(update={"method": methods})
 

@@ -8,6 +8,9 @@ from navcore.damping.base import Damping
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.fields import ScenarioFields
 
+_SHORT_S = 1e-3
+"""Step at which any motion gives its state at t = 0."""
+
 
 def need_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     """Yield the conditions of the methods' kinds of damping that are not met, each once."""
@@ -39,7 +42,7 @@ def _under_way(scenario: ScenarioFields, fault: Fault) -> Iterator[Fault]:
     if scenario.motion.recorded:
         return
     try:
-        row = scenario.motion.truth(1, 1.0, scenario.site.site(), scenario.earth).values[0]
+        row = scenario.motion.truth(1, _SHORT_S, scenario.site.site(), scenario.earth).values[0]
     except InputError:
         return  # a fault of the motion itself
     if moving := under_way(row, fault.allowed):

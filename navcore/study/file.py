@@ -93,10 +93,18 @@ def scenario_data(study: Study, where: str) -> dict[str, Any]:
     if study.fidelity is not None:
         apply_overrides(data, [f"run.fidelity={study.fidelity}"])
     # named once: a factor that changes a network does not change the name of its method
-    scenario = Scenario.parse(copy.deepcopy(data), where)
-    for given, method in zip(data.get("method", ()), scenario.method, strict=False):
-        given.setdefault("name", method.name)
+    scenario = Scenario.parse(copy.deepcopy(data), where, apart=True)
+    for given, name in zip(data.get("method", ()), names_of(scenario), strict=False):
+        given.setdefault("name", name)
     return data
+
+
+def names_of(scenario: Scenario) -> list[str]:
+    """Names of a scenario's methods as they were given, those that it refuses among them."""
+    names = [method.name for method in scenario.method]
+    for one in scenario.refused:  # by increasing place
+        names.insert(one.place, one.name)
+    return names
 
 
 def to_toml(study: Study) -> str:

@@ -53,6 +53,8 @@ class Plan:
         Values of each factor of the grid, as they stand in the results.
     scenario : Scenario
         Of the first setting.
+    refused : tuple of str
+        Methods that a value of a factor refuses, each with the value and the reason; the others run there.
 
     Raises
     ------
@@ -67,7 +69,9 @@ class Plan:
         self.shown = [_shown(factor) for factor in self.grid]
         self._data = scenario_data(study, where)
         self._made = lru_cache(maxsize=64)(self._make)
+        self._refused: dict[str, str] = {}
         self._checked = [*self._check_values()]
+        self.refused = (*self._refused.values(),)
         self.scenario = self.scenario_of((0,) * (len(self.grid) + 1))
         for i, hours in enumerate(study.output.epochs_h):
             if not 0.0 <= hours <= self.scenario.run.duration_h:
@@ -156,7 +160,7 @@ class Plan:
                     fault = set_field(data, field, copy.deepcopy(one))
                     if fault:
                         raise InputError(Fault("", field, one, fault))
-            return Scenario.parse(data)
+            return Scenario.parse(data, apart=True)
         except InputError as error:
             raise InputError(self._blamed(fault, values, changed) for fault in error.faults) from None
 
@@ -171,10 +175,23 @@ class Plan:
     def _check_values(self) -> Iterator[Scenario]:
         """Yield scenarios with one factor changed at a time; raises `InputError` that names the value."""
         usual = [(f, f.values[0]) if f.values else (f, drawn_value(f, 0.5)) for f in self.study.factor]
-        yield self._with(usual)
+        always = self._with(usual)
+        self._refused |= {one.name: one.line for one in always.refused}
+        yield always
         for factor in self.study.factor:
-            for value in factor.values or [drawn_value(factor, part) for part in _CHECKED]:
-                yield self._with([(f, value if f is factor else one) for f, one in usual], factor)
+            values = factor.values or [drawn_value(factor, part) for part in _CHECKED]
+            for value, shown in zip(values, _shown(factor) or values, strict=True):
+                scenario = self._with([(f, value if f is factor else one) for f, one in usual], factor)
+                for one in scenario.refused:
+                    told = Text(
+                        "{name} is refused with {factor} = {value}: {reason}",
+                        name=one.name,
+                        factor=factor.column,
+                        value=str(shown),
+                        reason=one.reason,
+                    )
+                    self._refused.setdefault(one.name, told)
+                yield scenario
 
 
 def plan_of(source: str) -> Plan:

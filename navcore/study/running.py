@@ -20,6 +20,7 @@ from navcore.quantities import NAMES, QUANTITIES, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
+from navcore.study.file import names_of
 from navcore.study.model import series_column
 from navcore.study.plan import Plan, Setting
 
@@ -129,19 +130,27 @@ def _batches(
 def _rows(plan: Plan, number: int, scenario: Scenario, results: Sequence[Result]) -> list[Row]:
     setting, _ = plan.at(number)
     shared = {"run": number, "seed": scenario.run.seed, **plan.values(setting)}
-    return [
+    rows = [
         shared | {"method": method.name} | _judged(plan, scenario, result)
         for method, result in zip(scenario.method, results, strict=True)
     ]
+    for one in scenario.refused:  # by increasing place
+        rows.insert(one.place, shared | {"method": one.name} | _not_run(plan, one.reason))
+    return rows
+
+
+def _not_run(plan: Plan, reason: str) -> Row:
+    """Columns of a method that is refused."""
+    return {"status": "refused", "reason": reason, "met": False if plan.scenario.requirement else None}
 
 
 def _refused(plan: Plan, number: int, error: InputError) -> list[Row]:
-    """Rows of a run that cannot be carried out: a row for each method of the first setting."""
+    """Rows of a run that cannot be carried out: a row for each method."""
     setting, seed = plan.at(number)
     reason = " ".join(str(error).split("\n"))
     shared = {"run": number, "seed": plan.scenario.run.seed + seed, **plan.values(setting)}
-    shared |= {"status": "refused", "reason": reason, "met": False if plan.scenario.requirement else None}
-    return [shared | {"method": method.name} for method in plan.scenario.method]
+    shared |= _not_run(plan, reason)
+    return [shared | {"method": name} for name in names_of(plan.scenario)]
 
 
 def _judged(plan: Plan, scenario: Scenario, result: Result) -> Row:

@@ -54,6 +54,8 @@ class Sweep:
         unit of the quantity's name; None where the run diverged or has none.
     words : str
         Why it is not varied.
+    refused : tuple of str
+        Methods that some of the values refuse, and why.
     """
 
     key: str
@@ -61,6 +63,7 @@ class Sweep:
     present: float = math.nan
     metrics: dict[str, tuple[tuple[float | None, ...], ...]] | None = None
     words: str = ""
+    refused: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,7 @@ class Sweeps(Answer):
                         name: [list(row) for row in rows] for name, rows in (one.metrics or {}).items()
                     },
                     "not_varied": one.words or None,
+                    "refused": list(one.refused),
                 }
                 for one in self.found.values()
             ],
@@ -106,6 +110,7 @@ class Sweeps(Answer):
             heads = [Column(one.key), *(Column(Text("method {k}", k=k)) for k in range(len(shown)))]
             rows = zip(map(number, one.values), *shown, strict=True)
             yield Table(tuple(heads), tuple(rows), SHOWN)
+            yield from one.refused
 
 
 SHOWN = "tilt_rms_arcsec"
@@ -187,7 +192,16 @@ def sweep(
         return None
     methods = range(len(scenario.method))
     metrics = {name: tuple(tuple(row[k].get(name) for row in rows) for k in methods) for name in OF_RUNS}
-    return Sweep(key, values, axis.present, metrics)
+    return Sweep(key, values, axis.present, metrics, refused=plan.refused)
+
+
+def refusals(scenario: Scenario, keys: Sequence[str]) -> Iterator[str]:
+    """Methods that a value of a quantity refuses, and why; told before anything runs."""
+    for key in keys:
+        axis = _AXES[key](scenario)
+        planned = axis if isinstance(axis, str) else _planned(scenario, key, axis)
+        if not isinstance(planned, str):
+            yield from planned[1].refused
 
 
 def _planned(scenario: Scenario, key: str, axis: _Axis) -> tuple[tuple[float, ...], Plan] | str:

@@ -1,4 +1,4 @@
-"""Recordings in budget and floor: a recorded log errs as it is fitted, or nothing is compared with a floor."""
+"""Recordings in budget and floor: a recorded log errs as it is fitted, or there is no floor."""
 
 import pytest
 

@@ -52,9 +52,7 @@ def test_what_was_planted_comes_back_within_the_intervals(found: FittedImu) -> N
         "accel_tau_s": ACCEL_TAU_S,
     }
     document = found.document()["imu"]
-    held = [
-        one["low"] <= truth <= one["high"] for name, truth in planted.items() for one in document[name]
-    ]
+    held = [one["low"] <= truth <= one["high"] for name, truth in planted.items() for one in document[name]]
     assert sum(held) >= 16 and len(held) == 18
     for name in ("gyro_arw_dpsh", "accel_vrw_ugpshz"):
         assert [one["value"] for one in document[name]] == pytest.approx([planted[name]] * 3, rel=0.05)

@@ -137,7 +137,9 @@ def test_a_log_that_measures_forward_alone_says_nothing_of_starboard() -> None:
 def test_on_one_heading_the_current_is_part_of_the_bias() -> None:
     fit = fit_log(voyage(4, 6.0, turns=False), through_water=True)
     assert fit.current is None and not fit.tides
-    assert any("a current cannot be told" in str(row) for row in FittedLog(fit, voyage(4, 1.0), "water").rows())
+    assert any(
+        "a current cannot be told" in str(row) for row in FittedLog(fit, voyage(4, 1.0), "water").rows()
+    )
 
 
 def test_white_noise_alone_has_no_drift() -> None:
@@ -164,7 +166,10 @@ def test_stamps_that_jitter_do_not_change_the_rate_of_the_fit() -> None:
 
 def test_too_short_records_are_refused() -> None:
     with pytest.raises(InputError, match="a fit needs 50"):
-        fit_log(LogAlongTrack(np.arange(49.0), np.zeros((49, 2)), Truth(0.5, np.zeros((1, COLUMNS)))), through_water=True)
+        fit_log(
+            LogAlongTrack(np.arange(49.0), np.zeros((49, 2)), Truth(0.5, np.zeros((1, COLUMNS)))),
+            through_water=True,
+        )
 
 
 def test_the_likelihood_is_that_of_the_whole_covariance() -> None:
