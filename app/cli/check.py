@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated
@@ -33,7 +34,7 @@ class CheckCommand:
     Attributes
     ----------
     file : str
-        The file.
+        The file; of several recordings also what does not agree between them.
     map : str
         Map (TOML) that says what the columns of the file mean.
     write_map : str
@@ -44,22 +45,38 @@ class CheckCommand:
         Print one JSON document.
     """
 
-    file: Annotated[Positional[str], arg(metavar="FILE")]
+    file: Annotated[Positional[tuple[str, ...]], arg(metavar="FILE")]
     map: str | None = None
     write_map: str | None = None
     force: bool = False
     json: bool = False
 
     def execute(self) -> int:
-        """Print the report; 0 when the file was understood, else 2."""
+        """Print the report; 0 when every file was understood, else 2."""
+        from navcore.foundation.errors import Fault, InputError
+
+        if not self.file:
+            raise InputError(Fault("schuler", "", None, "check needs FILE"))
         if self.write_map is not None:
             self._write_map(self.write_map)
-        report = guarded_check(self.file, self.map)
-        if self.json or report.ok:
-            emit_result(self.json, report.as_dict(), report.lines)
-        for fault in report.faults:
+        reports = [guarded_check(file, self.map) for file in self.file]
+        good = all(report.ok for report in reports)
+        if len(reports) > 1 and good:
+            reports.append(_guarded(check_together, self.file, self.map))
+            good = reports[-1].ok
+        if self.json or any(report.ok for report in reports):
+            emit_result(self.json, self._document(reports), lambda: _lines(reports))
+        for fault in (fault for report in reports for fault in report.faults):
             say(str(fault))
-        return 0 if report.ok else 2
+        return 0 if good else 2
+
+    def _document(self, reports: list[FileReport]) -> dict[str, object]:
+        """One report as it is; of several files one each, and what they hold together."""
+        documents = [report.as_dict() for report in reports]
+        if len(self.file) == 1:
+            return documents[0]
+        together = documents[len(self.file)] if len(documents) > len(self.file) else None
+        return {"files": documents[: len(self.file)], "together": together}
 
     def _write_map(self, target: str) -> None:
         from navcore.checks.map_guess import guessed_map
@@ -68,9 +85,11 @@ class CheckCommand:
 
         if self.map is not None:
             raise InputError(Fault("", _WRITE_MAP, target, "does not go with --map"))
-        require_file(target, "check", [self.file], force=self.force, option=_WRITE_MAP)
-        text = guessed_map(self.file)
-        write_file(target, text, "check", [self.file], force=self.force, option=_WRITE_MAP)
+        if len(self.file) > 1:
+            raise InputError(Fault("", _WRITE_MAP, target, "is the map of one FILE"))
+        require_file(target, "check", self.file, force=self.force, option=_WRITE_MAP)
+        text = guessed_map(self.file[0])
+        write_file(target, text, "check", self.file, force=self.force, option=_WRITE_MAP)
         say(f"map: {target}")
 
 
@@ -79,23 +98,51 @@ def guarded_check(file: str, map_file: str | None = None) -> FileReport:
 
     A preset is checked here: it is ours, and no kernel is compiled but those that its check needs.
     """
+    if map_file is None and _is_preset(file):
+        return _check_preset(file)
+    more = ()
+    if _holds_a_scenario(file):
+        _compile_kernels()
+        more = _SCENARIO_READERS
+    return _guarded(_check_one, (file,), map_file, more)
+
+
+def _guarded(
+    work: Callable[..., FileReport], files: tuple[str, ...], map_file: str | None, more: tuple[str, ...] = ()
+) -> FileReport:
+    """Do a check in the child."""
     from navcore.checks.report import FileReport
     from navcore.foundation import guarded
     from navcore.foundation.errors import InputError
 
-    if map_file is None and _is_preset(file):
-        return _check_preset(file)
-    readers = (*_READERS, *_BY_ENDING.get(PurePath(file).suffix.lower(), ()))
-    if _holds_a_scenario(file):
-        _compile_kernels()
-        readers += _SCENARIO_READERS
+    endings = (ending for file in files for ending in _BY_ENDING.get(PurePath(file).suffix.lower(), ()))
+    readers = (*_READERS, *dict.fromkeys(endings), *more)
     guarded.start(readers, guarded.Limits(2 << 30, cpu_s=120, wall_s=600.0))
     try:
-        return guarded.call(file, check, file, map_file)
+        return guarded.call(files[0], work, files, map_file)
     except InputError as error:
-        return FileReport(file, "", faults=error.faults)
+        return FileReport(", ".join(files), "", faults=error.faults)
     finally:
         guarded.stop()
+
+
+def _check_one(files: tuple[str, ...], map_file: str | None = None) -> FileReport:
+    return check(files[0], map_file)
+
+
+def check_together(files: tuple[str, ...], map_file: str | None = None) -> FileReport:
+    """Say what several recordings hold together, in this process."""
+    from navcore.checks import together
+
+    return together.check_together(files, map_file)
+
+
+def _lines(reports: list[FileReport]) -> list[str]:
+    """Text of the reports that were understood, an empty line between them."""
+    lines: list[str] = []
+    for report in (report for report in reports if report.ok):
+        lines += [*([""] if lines else []), *report.lines()]
+    return lines
 
 
 def _holds_a_scenario(file: str) -> bool:

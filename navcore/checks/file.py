@@ -25,7 +25,7 @@ from navcore.io.suspects import suspect_warnings
 from navcore.io.times.set_clocks import gap_doubt
 
 _SNIFFED_BYTES = 8192
-_NAMES = {
+NAMES = {
     "position": Text("positions"),
     "velocity": Text("velocity over ground (E, N)"),
     "water": Text("speed through water"),
@@ -33,6 +33,7 @@ _NAMES = {
     "heading": "heading",
     "attitude": Text("pitch and roll"),
 }
+"""Quantities in words."""
 
 
 class Checker(NamedTuple):
@@ -199,7 +200,7 @@ def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]
             span_s=entry["span_s"],
             gaps=gaps,
         )
-        words.append(f"  {_NAMES[name]} ({entry['source']}): {samples}")
+        words.append(f"  {NAMES[name]} ({entry['source']}): {samples}")
         words += [f"    {_extent(key, entry[key])}" for key in entry if key.endswith(("_deg", "_kn", "_mps"))]
     words += [Text("  {choice}", choice=choice) for choice in source.choices]
     clock = clock_text(recording)
@@ -224,16 +225,16 @@ def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
         gaps, longest = series.gaps()
         doubt = gap_doubt(series, recording.position)
         if doubt:
-            existing.append(Text("{names}: {doubt}", names=_NAMES[name], doubt=doubt))
+            existing.append(Text("{names}: {doubt}", names=NAMES[name], doubt=doubt))
         elif gaps:
             existing.append(
                 Text(
                     "{names}: {gaps} gaps, the longest {longest:.1f} s",
-                    names=_NAMES[name],
+                    names=NAMES[name],
                     gaps=gaps,
                     longest=longest,
                 )
             )
         if series.time_s.size < 2:
-            existing.append(Text("{names}: a single sample", names=_NAMES[name]))
+            existing.append(Text("{names}: a single sample", names=NAMES[name]))
     return tuple(existing)

@@ -9,7 +9,7 @@ import numpy as np
 from navcore.foundation.text import Text
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import Sentences, Tally
-from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, OTHER_MESSAGE, decode
+from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, NOT_GIVEN, OTHER_MESSAGE, decode
 from navcore.io.times.between import are_doubled, by_kind, coarse, filled, trusted
 from navcore.io.times.doubts import trust_of
 from navcore.io.times.repeats import there_again
@@ -137,6 +137,7 @@ class Gathered:
     def in_order(self) -> Ordered:
         """Readings by channel; what has no time, or one that cannot be, is left out and counted."""
         rows = np.concatenate(self._rows)
+        self._tell_absent(rows)
         self._tell_times(rows)
         channel, fates = rows["channel"], rows["fate"]
         kept = fates >= OTHER
@@ -161,6 +162,35 @@ class Gathered:
                     part = row[begin:end]
                     readings[name][quantity] = Held(rows["time_s"][part], values[begin:end], part)
         return Ordered(readings, times, fates, rows["kind"], list(self._kinds))
+
+    def _tell_absent(self, rows: np.ndarray) -> None:
+        """Drop the speeds that a kind of sentence never gives; an empty one of another kind is invalid.
+
+        A log that measures no speed over ground sends empty fields with the flag of an invalid reading.
+        """
+        names = list(self._kinds)
+        for quantity in ALONG_AXES:
+            if quantity not in self._quantities:
+                continue
+            row, values = (
+                np.concatenate(columns) for columns in zip(*self._quantities[quantity], strict=True)
+            )
+            kinds, empty = rows["kind"][row], values[:, 2] == NOT_GIVEN
+            absent = ~np.isin(kinds, np.unique(kinds[~empty]))
+            lost = empty & ~absent
+            values[lost, 2] = 0.0
+            rows["invalid"][row[lost]] = True
+            self._tally.flagged.update((names[kind], quantity) for kind in kinds[lost].tolist())
+            self._quantities[quantity] = [(row[~absent], values[~absent])]
+            others = [
+                part for name, parts in self._quantities.items() if name != quantity for part, _ in parts
+            ]
+            alone = np.setdiff1d(row[absent], np.concatenate([row[:0], *others]))
+            rows["fate"][alone[rows["fate"][alone] == OTHER]] = EMPTY
+        self._quantities = defaultdict(
+            list,
+            {name: parts for name, parts in self._quantities.items() if any(len(row) for row, _ in parts)},
+        )
 
     def _tell_times(self, rows: np.ndarray) -> None:
         """Give every sentence its time, in place, and mark those that have none or one that cannot be."""

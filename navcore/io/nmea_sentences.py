@@ -40,6 +40,8 @@ without."""
 
 ALONG_AXES = ("water", "ground")
 """Quantities whose last value says whether the log calls them valid."""
+NOT_GIVEN = -1.0
+"""In its place: the field is empty, though a flag stands beside it."""
 
 
 OTHER_MESSAGE, ABOUT_OTHERS = 1, 2
@@ -56,7 +58,8 @@ class Readings(NamedTuple):
         Of each kind: which of the sentences hold a quantity, shape (m,), and its values, shape (m, k).
         ``position``: latitude, longitude (rad), height above the ellipsoid (m, NaN if not given).
         ``velocity``: E, N over the ground, m/s. ``water``, ``ground``: starboard, forward speed (m/s) and
-        whether the log calls it valid. ``heading``: rad, from true north.
+        whether the log calls it valid (1 or 0, `NOT_GIVEN` for an empty one). ``heading``: rad, from true
+        north.
     doubts, invalid : Counter
         Readings by their address and by what a flag says of them (simulated, manual, dead-reckoned); those
         that a flag calls invalid by their address and quantity.
@@ -108,6 +111,7 @@ def _axes(fields: Fields, first: int) -> np.ndarray:
     given, measured = ~np.isnan(forward), fields.codes(flag_of("VBW", first + 2)) != INVALID_CODE
     axes = np.column_stack([_or_zero(transverse), forward, np.ones_like(forward)])
     axes[~(given & measured)] = 0.0
+    axes[~given, 2] = NOT_GIVEN
     axes[np.isinf(forward)] = math.inf
     axes[~given & fields.are(first + 2, "")] = math.nan
     return axes

@@ -4,6 +4,7 @@ told.
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from navcore.io.nmea_flags import DEAD_RECKONED, FLAGS, INVALID, UNKNOWN, Flag, meaning
@@ -104,3 +105,26 @@ def test_of_a_log_that_has_lost_the_water_another_is_taken(tmp_path: Path) -> No
     read = read_recording(write(tmp_path / "log.txt", lines))
     assert read.water is not None and read.ground is not None
     assert (read.water.what, read.ground.what) == ("VWVHW", "VDVBW")
+
+
+def _vbw(k: int, body: str) -> str:
+    return stamped(k, f"VDVBW,{body}")
+
+
+def test_speeds_that_a_log_never_gives_are_absent_and_hide_none_that_are_invalid(tmp_path: Path) -> None:
+    """An EM log sends empty fields over ground with the letter V in each sentence."""
+    lines = [_vbw(k, "5.0,0.1,A,,,V") for k in range(200)]
+    lines[50:60] = [_vbw(k, "5.0,0.1,V,,,V") for k in range(50, 60)]
+    lines[80:83] = [_vbw(k, ",,V,,,V") for k in range(80, 83)]
+    read = read_recording(write(tmp_path / "log.txt", lines))
+    assert read.ground is None and read.water is not None
+    assert int(np.count_nonzero(~read.water.valid)) == 13 and read.sources[0].invalid == 13
+    told = [words for words in read.warnings if "flagged invalid" in words]
+    assert len(told) == 1 and "13 readings of the speed through the water" in told[0]
+
+
+def test_speeds_that_are_empty_at_times_are_invalid_there(tmp_path: Path) -> None:
+    lines = [_vbw(k, "5.0,0.1,A,4.0,0.0,A" if k % 4 else "5.0,0.1,A,,,V") for k in range(40)]
+    read = read_recording(write(tmp_path / "log.txt", lines))
+    assert read.ground is not None and int(np.count_nonzero(read.ground.valid)) == 30
+    assert any("10 readings of the speed over ground" in words for words in read.warnings)
