@@ -88,7 +88,7 @@ class CheckCommand:
         if len(self.file) > 1:
             raise InputError(Fault("", _WRITE_MAP, target, "is the map of one FILE"))
         require_file(target, "check", self.file, force=self.force, option=_WRITE_MAP)
-        text = guessed_map(self.file[0])
+        text = guessed_map(next(iter(self.file)))
         write_file(target, text, "check", self.file, force=self.force, option=_WRITE_MAP)
         say(f"map: {target}")
 

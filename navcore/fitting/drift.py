@@ -88,6 +88,8 @@ class Posterior:
         Mean and standard deviation of each coefficient.
     white, drift, tau_s : Estimate
         Standard deviation of the white noise of a sample and of the drift, and the drift's correlation time.
+    growth : Estimate
+        By how much the drift grows in the square root of a second, while that is short: sigma sqrt(2 / tau).
     at : tuple of float
         Correlation time and ratio of the variances at the peak, for `coefficients_at`.
     """
@@ -97,6 +99,7 @@ class Posterior:
     white: Estimate
     drift: Estimate
     tau_s: Estimate
+    growth: Estimate
     at: tuple[float, float]
 
 
@@ -138,14 +141,14 @@ def posterior(
         near = np.log(at)[:, None] + np.array([[-1.0, 1.0], [-1.5, 1.5]])
         box, points = np.clip(near, box[:, :1], box[:, 1:]), _NEXT
     for _ in range(_ZOOMS):
-        axes = [np.linspace(*side, points) for side in box]
+        axes = [np.linspace(low, high, points) for low, high in box.tolist()]
         found = _on_grid(blocks, axes)
         closer = _near_peak(found.log, axes, np.array([least, most]))
         shrunk = np.ptp(closer, axis=1) / np.maximum(np.ptp(box, axis=1), 1e-9)
         box, points = closer, _NEXT
         if np.all(shrunk > 0.7):
             break
-    axes = [np.linspace(*side, _LAST) for side in box]
+    axes = [np.linspace(low, high, _LAST) for low, high in box.tolist()]
     return _summed(blocks, axes, _on_grid(blocks, axes))
 
 
@@ -190,7 +193,15 @@ def _summed(blocks: Blocks, axes: list[np.ndarray], found: _Likelihood) -> Poste
     drift = _estimate(np.sqrt(ratio * variance))
     if found.log.max() - without_drift(blocks) < _LEAST_GAIN:
         drift = Estimate(0.0, 0.0, drift.high)
-    return Posterior(mean, deviation, _estimate(np.sqrt(variance)), drift, _estimate(tau), at)
+    return Posterior(
+        coefficients=mean,
+        deviations=deviation,
+        white=_estimate(np.sqrt(variance)),
+        drift=drift,
+        tau_s=_estimate(tau),
+        growth=_estimate(np.sqrt(2.0 * ratio * variance / tau)),
+        at=at,
+    )
 
 
 def _estimate(draws: np.ndarray) -> Estimate:
@@ -213,7 +224,7 @@ def _likelihood(blocks: Blocks, tau_s: np.ndarray, ratio: np.ndarray) -> _Likeli
     logs, samples = np.zeros(tau_s.size), 0
     wide = (slice(None), slice(None), None, None)
     for i in range(k):
-        count = pieces.count[i]
+        count = pieces.samples[i]
         there = count > 0
         total = over**2 * spread + q22 + 1.0 / np.maximum(count, 1)
         weight = there / total
@@ -246,7 +257,7 @@ class _Pieces(NamedTuple):
     """Data and regressors side by side, (k, lanes, a, 1 + p), and samples (k, lanes)."""
 
     values: np.ndarray
-    count: np.ndarray
+    samples: np.ndarray
 
 
 def _pieces(blocks: Blocks) -> _Pieces:

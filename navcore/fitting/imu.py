@@ -19,7 +19,7 @@ from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, HOUR, MICR
 from navcore.sensors.recorded_imu import ImuRecord
 
 SHORTEST_S = 120.0
-_BLOCKS = 1500
+_BLOCKS = 4000
 _LONGEST_TAU = 0.5
 _AT_END = 0.8
 """Share of the longest correlation time beyond which the drift does not level off within the record."""
@@ -216,13 +216,10 @@ def _axis(rates: np.ndarray, rate_hz: float) -> AxisFit:
 
 
 def _walk(found: Posterior, longest_s: float) -> Estimate:
-    """Rate walk of a drift that does not level off within the record: it grows by sigma sqrt(2 t / tau)."""
-    drift, tau_s = found.drift, found.tau_s
-    ends = [(value * (2.0 / tau) ** 0.5) for value, tau in zip(drift, tau_s, strict=True)]
-    low, high = min(ends), max(ends)
-    if drift.value == 0.0 or tau_s.high < _AT_END * longest_s:
-        return Estimate(0.0, 0.0, high)
-    return Estimate(ends[0], low, high)
+    """Rate walk of a drift that does not level off within the record."""
+    if found.drift.value == 0.0 or found.tau_s.high < _AT_END * longest_s:
+        return Estimate(0.0, 0.0, found.growth.high)
+    return found.growth
 
 
 def allan_deviation(rates: np.ndarray, rate_hz: float) -> Allan:

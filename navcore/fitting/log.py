@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from navcore.fitting.along_track import LogAlongTrack
 from navcore.fitting.drift import (
     NINETY_FIVE,
     Blocks,
@@ -21,28 +22,23 @@ from navcore.fitting.drift import (
     coefficients_at,
     posterior,
 )
-from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.agreement import M2_S
 from navcore.io.clocks import lag_between
 from navcore.io.series import rate_of
-from navcore.motion.track import TrackMotion
-from navcore.motion.truth import Site, Truth
-from navcore.sensors.log_files import log_recording, log_series
-from navcore.sensors.recorded import recorded_window
-from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
 
 FEWEST_SAMPLES = 50
 K1_S = 23.9345 * HOUR
 """Period of the luni-solar diurnal tide."""
-_GRID_STEP_S = 0.5
 _BLOCKS_A_TAU = 10.0
 _FEWEST_BLOCKS, _MOST_BLOCKS = 200, 20_000
 _SMOOTHED_S = 150.0
 """Time over which the speed of the track is smoothed where it tells the scale."""
+_CHANGE_S = 20.0
+"""Time over which its rate of change, which tells the clock, is smoothed: the track has noise."""
 _LEAST_TURN = 0.1
 """Standard deviation of the heading's sine and cosine from which a current can be told from a bias."""
 _LEAST_TIDE = 0.4
@@ -119,69 +115,6 @@ class LogErrorFit:
         return 0.0 if self.delay_s is None else self.delay_s.value
 
 
-@dataclass(frozen=True)
-class LogAlongTrack:
-    """A recorded log and the true motion it belongs to.
-
-    Attributes
-    ----------
-    time_s : ndarray, shape (m,)
-        Epochs of the log after t = 0, those called valid by the log only.
-    reading : ndarray, shape (m, 2)
-        Starboard, forward speed, m/s.
-    truth : Truth
-        Motion over the time that log and track share.
-    """
-
-    time_s: np.ndarray
-    reading: np.ndarray
-    truth: Truth
-
-    @property
-    def end_s(self) -> float:
-        """End of the motion, s."""
-        return (len(self.truth.values) - 1) * self.truth.step_s
-
-    def known(self, late_s: float) -> np.ndarray:
-        """Whether the motion is known ``late_s`` before each epoch, shape (m,)."""
-        if self.truth.constant:
-            return np.ones(self.time_s.size, dtype=bool)
-        return (self.time_s >= late_s) & (self.time_s - late_s <= self.end_s)
-
-    def error(self, late_s: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Times (n,), and reading minus true velocity along the ship's axes ``late_s`` earlier (n, 2)."""
-        known = self.known(late_s)
-        velocity, heading = horizontal_state(self.truth, self.time_s[known] - late_s)
-        return self.time_s[known], self.reading[known] - to_ship(velocity, heading)
-
-
-def log_along_track(reference: Reference, track: TrackMotion) -> LogAlongTrack:
-    """Put a recorded log beside the track recorded with it.
-
-    Parameters
-    ----------
-    reference : Reference
-        With ``kind = "file"``; its ``speed`` says which speed of the log is meant.
-    track : TrackMotion
-        Positions and heading of the same time.
-
-    Raises
-    ------
-    InputError
-        A file is missing or wrong, they share no time, or the log does not measure along the ship's axes.
-    """
-    series, along_axes = log_series(reference, log_recording(reference))
-    window = recorded_window(track, reference)
-    if not along_axes or window is None:
-        allowed = Text("needs speeds along the ship's axes (VBW, VHW or speed columns)")
-        raise InputError(Fault("", "reference.file", reference.file, allowed))
-    count = int(window.span_s / _GRID_STEP_S) + 1
-    truth = track.truth(count, _GRID_STEP_S, Site(0.0, 0.0, 0.0), WGS84, start_utc=window.start_s)
-    elapsed = series.time_s - window.start_s
-    within = series.valid & (elapsed >= 0.0) & (elapsed <= (count - 1) * _GRID_STEP_S)
-    return LogAlongTrack(elapsed[within], series.values[within], truth)
-
-
 def fit_log(log: LogAlongTrack, *, through_water: bool) -> LogErrorFit:
     """Fit clock, bias, scale, current, tide, noise and drift of a log.
 
@@ -209,18 +142,20 @@ def fit_log(log: LogAlongTrack, *, through_water: bool) -> LogErrorFit:
         tides=_tides(float(np.ptp(log.time_s))) if through_water and moving and _turns(heading) else (),
     )
     late_s = _rough_clock(log) if told.moving else 0.0
-    length_s, taus_s = _lengths(log, told, late_s)
-    rows = _rows(log, told, late_s, length_s)
-    found = posterior(rows.blocks, taus_s)
+    rows = _rows(log, told, late_s)
+    length_s, taus_s = _lengths(rows)
+    blocks = rows.blocks(length_s)
+    found = posterior(blocks, taus_s)
     if told.moving:
         for _ in range(_CLOCK_ROUNDS):
-            mean, deviation = coefficients_at(rows.blocks, *found.at)
+            mean, deviation = coefficients_at(blocks, *found.at)
             step = float(mean[rows.clock])
             late_s += step
-            rows = _rows(log, told, late_s, length_s, float(mean[rows.scale]))
+            rows = _rows(log, told, late_s, float(mean[rows.scale]))
+            blocks = rows.blocks(length_s)
             if abs(step) < 0.1 * deviation[rows.clock]:
                 break
-        found = posterior(rows.blocks, taus_s, found.at)
+        found = posterior(blocks, taus_s, found.at)
     return _fit(log, told, rows, found, late_s)
 
 
@@ -236,17 +171,24 @@ class _Told:
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """Blocks of the regression, and where its coefficients stand."""
+    """Samples of the regression, and where its coefficients stand; -1 for one that is not fitted."""
 
-    blocks: Blocks
+    time_s: np.ndarray
+    error: np.ndarray
+    design: np.ndarray
+    prior: np.ndarray
     bias: int
     scale: int
     clock: int
     water: int
 
+    def blocks(self, length_s: float) -> Blocks:
+        """Means over blocks."""
+        return blocks_of(self.time_s, self.error, self.design, self.prior, length_s)
 
-def _rows(log: LogAlongTrack, told: _Told, late_s: float, length_s: float, scale: float = 0.0) -> _Rows:
-    """Error of the log and its regressors, as means over blocks.
+
+def _rows(log: LogAlongTrack, told: _Told, late_s: float, scale: float = 0.0) -> _Rows:
+    """Error of the log and its regressors.
 
     The scale acts on the smoothed speed. What that leaves out of the speed is taken off the error by the
     scale that was found before.
@@ -273,8 +215,7 @@ def _rows(log: LogAlongTrack, told: _Told, late_s: float, length_s: float, scale
         columns += [-wave[:, None] * axis for wave in waves for axis in along]
         prior += [_SPEEDS] * (2 * len(waves))
     design = np.stack(columns, axis=2)
-    blocks = blocks_of(time_s, error[:, axes], design, np.array(prior), length_s)
-    return _Rows(blocks, 0, at_scale, at_clock, at_water)
+    return _Rows(time_s, error[:, axes], design, np.array(prior), 0, at_scale, at_clock, at_water)
 
 
 def _speeds(
@@ -286,8 +227,12 @@ def _speeds(
     step_s = log.truth.step_s
     grid = np.arange(len(log.truth.values)) * step_s
     whole = to_ship(*horizontal_state(log.truth, grid))
-    smooth = uniform_filter1d(whole, max(2 * int(0.5 * _SMOOTHED_S / step_s) + 1, 3), axis=0, mode="nearest")
-    change = np.gradient(whole, step_s, axis=0)
+
+    def smoothed(values: np.ndarray, over_s: float) -> np.ndarray:
+        return uniform_filter1d(values, 2 * int(0.5 * over_s / step_s) + 1, axis=0, mode="nearest")
+
+    smooth = smoothed(whole, _SMOOTHED_S)
+    change = smoothed(np.gradient(whole, step_s, axis=0), _CHANGE_S)
     at = time_s - late_s
     speed, *others = (
         np.column_stack([np.interp(at, grid, column) for column in values.T])
@@ -305,17 +250,16 @@ def _rough_clock(log: LogAlongTrack) -> float:
     return lag.late_s if lag is not None and lag.related else 0.0
 
 
-def _lengths(log: LogAlongTrack, told: _Told, late_s: float) -> tuple[float, tuple[float, float]]:
+def _lengths(rows: _Rows) -> tuple[float, tuple[float, float]]:
     """Length of a block, and the range of the drift's correlation time, s.
 
     The blocks are short beside the correlation time of what least squares leave.
     """
-    interval_s, span_s = 1.0 / rate_of(log.time_s), float(np.ptp(log.time_s))
+    interval_s, span_s = 1.0 / rate_of(rows.time_s), float(np.ptp(rows.time_s))
     shortest, longest = max(span_s / _MOST_BLOCKS, interval_s), max(span_s / _FEWEST_BLOCKS, interval_s)
     length_s = longest
     while length_s > shortest:
-        rows = _rows(log, told, late_s, length_s)
-        tau_s = _left_tau(rows.blocks)
+        tau_s = _left_tau(rows.blocks(length_s))
         if tau_s > 0.5 * _BLOCKS_A_TAU * length_s:
             length_s = min(length_s, tau_s / _BLOCKS_A_TAU)
             break

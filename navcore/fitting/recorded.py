@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from navcore.fitting.along_track import LogAlongTrack, log_along_track
 from navcore.fitting.drift import Estimate
-from navcore.fitting.log import LogAlongTrack, LogErrorFit, Tide, fit_log, log_along_track
+from navcore.fitting.log import LogErrorFit, Tide, fit_log
 from navcore.foundation.answers import Answer, Column, Table
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept, recorded_state

@@ -72,7 +72,7 @@ class Scenario(ScenarioFields):
             raise InputError(faults_from(error, cls, data, where)) from None
         scenario = scenario.with_sensors()
         faults = list(scenario.faults())
-        refused = refused_methods(scenario) if apart and faults else ()
+        refused = refused_methods(scenario.method, scenario._faults_with) if apart and faults else ()
         if refused:
             places = {one.place for one in refused}
             left = tuple(one for place, one in enumerate(scenario.method) if place not in places)
@@ -94,6 +94,10 @@ class Scenario(ScenarioFields):
         if method.kind.self_referenced:
             figures = replace(figures, log_noise=0.0, log_drift=0.0)
         return method.model_copy(update={"network": method.network.with_sensors(figures)})
+
+    def _faults_with(self, method: Method) -> Iterator[Fault]:
+        """Yield the faults of the scenario with one method alone."""
+        return self.model_copy(update={"method": (method,)}).faults()
 
     def faults(self) -> Iterator[Fault]:
         """Yield the faults of the whole scenario: lengths, names, missing references, refused networks."""

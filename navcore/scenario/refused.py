@@ -1,15 +1,12 @@
 """Methods that the rest of a scenario refuses: each is refused alone, and the others stand."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from navcore.foundation.errors import Fault
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
-
-if TYPE_CHECKING:
-    from navcore.scenario.model import Scenario
 
 
 class Refused(NamedTuple):
@@ -44,25 +41,28 @@ class Refused(NamedTuple):
         return {"name": self.name, "reason": str(self.reason)}
 
 
-def refused_methods(scenario: "Scenario") -> tuple[Refused, ...]:
+def refused_methods(
+    methods: Sequence[Method], faults_of: Callable[[Method], Iterator[Fault]]
+) -> tuple[Refused, ...]:
     """Methods that have faults of their own in a scenario.
 
     Parameters
     ----------
-    scenario : Scenario
-        Whose fields are right each by itself.
+    methods : sequence of Method
+        Of the scenario.
+    faults_of : callable
+        Yields the faults of the scenario with one method alone.
 
     Returns
     -------
     tuple of Refused
         Empty where a fault concerns the scenario as a whole.
     """
-    free = scenario.model_copy(update={"method": (Method(name="free"),)})
-    if [*free.faults()]:
+    if [*faults_of(Method(name="free"))]:
         return ()
     found = []
-    for place, method in enumerate(scenario.method):
-        faults = tuple(_at(place, scenario.model_copy(update={"method": (method,)}).faults()))
+    for place, method in enumerate(methods):
+        faults = tuple(_at(place, faults_of(method)))
         if faults:
             found.append(Refused(method.label(), place, faults))
     return tuple(found)

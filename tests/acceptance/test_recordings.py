@@ -10,6 +10,8 @@ from navcore.alignment.fine import coarse_alignment
 from navcore.checks.file import check_file
 from navcore.checks.imu import IMU_CHECKER
 from navcore.engine.simulation import simulate
+from navcore.fitting.along_track import log_along_track
+from navcore.fitting.log import fit_log
 from navcore.foundation.earth import WGS84
 from navcore.foundation.units import DEG, DEG_PER_HOUR, HOUR, KNOT
 from navcore.io.recording import load, shared_window
@@ -19,7 +21,6 @@ from navcore.motion.truth import HEADING, LAT, LON, VE, VN, Site
 from navcore.scenario.file import load as load_scenario
 from navcore.scenario.file import read_toml
 from navcore.scenario.model import Scenario
-from navcore.sensors.fit import fit_delay, fit_log_error, log_along_track
 from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.recorded_imu import check_rest, read_imu
@@ -177,19 +178,21 @@ def log():
     return log_along_track(REFERENCE, TrackMotion(file=SHIP.track))
 
 
-def test_the_fit_gives_the_numbers_of_the_preset(preset, log):
-    delay = fit_delay(log)
-    fit = fit_log_error(*log.error(delay), delay_s=delay)
+def test_the_numbers_of_the_preset_lie_within_the_intervals_of_the_fit(preset, log):
+    fit = fit_log(log, through_water=False)
     stated = preset["reference"]
-    found = fit.reference().model_dump(include=set(stated), mode="json")
-    if SHIP.raw:
-        assert stated == found
-    assert delay == pytest.approx(12.6, abs=0.1)
-    assert fit.bias == pytest.approx([-0.051, -0.027], abs=0.002)
-    assert fit.bias_std == pytest.approx([0.0034, 0.0037], abs=0.001)
-    assert fit.noise == pytest.approx(0.007, abs=0.002)
-    assert fit.drift == pytest.approx(0.020, abs=0.002)
-    assert fit.drift_tau_s == pytest.approx(11.5, rel=0.2)
+    for one, value in (
+        (fit.delay_s, stated["delay_s"]),
+        *zip(fit.bias, stated["bias_mps"], strict=True),
+        (fit.noise, stated["noise_mps"]),
+        (fit.drift, stated["drift_mps"]),
+        (fit.drift_tau_s, stated["drift_tau_s"]),
+    ):
+        assert one.low <= value <= one.high
+    assert fit.delay_s.value == pytest.approx(12.2, abs=0.4) and fit.delay_s.deviation < 0.5
+    assert fit.bias[0].value == pytest.approx(-0.051, abs=0.002)
+    assert fit.noise.value == pytest.approx(0.005, abs=0.002)
+    assert fit.drift.value == pytest.approx(0.021, abs=0.002)
     assert 695.0 < fit.span_s < 714.0
 
 
@@ -201,12 +204,11 @@ def test_the_delay_is_real_both_axes_err_less_with_it(log):
 def test_the_fit_does_not_hang_on_the_smoothing_of_the_track():
     for smoothing in (2.0, 10.0):
         other = log_along_track(REFERENCE, TrackMotion(file=SHIP.track, smoothing_s=smoothing))
-        delay = fit_delay(other)
-        fit = fit_log_error(*other.error(delay), delay_s=delay)
-        assert delay == pytest.approx(12.6, abs=0.4)
-        assert fit.bias == pytest.approx([-0.051, -0.027], abs=0.003)
+        fit = fit_log(other, through_water=False)
+        assert fit.delay_s.value == pytest.approx(12.2, abs=0.8)
+        assert fit.bias[0].value == pytest.approx(-0.051, abs=0.003)
         # What is left beside the bias is 0.02 m/s: how much of it is noise the smoothing decides.
-        assert np.hypot(fit.noise, fit.drift) == pytest.approx(0.023, abs=0.006)
+        assert np.hypot(fit.noise.value, fit.drift.value) == pytest.approx(0.023, abs=0.006)
 
 
 def test_the_preset_names_where_its_error_comes_from(preset):

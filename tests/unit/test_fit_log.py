@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from navcore.fitting.along_track import LogAlongTrack, log_along_track
 from navcore.fitting.drift import Blocks, _likelihood
-from navcore.fitting.log import LogAlongTrack, LogErrorFit, fit_log, log_along_track
+from navcore.fitting.log import LogErrorFit, fit_log
 from navcore.fitting.recorded import FittedLog, can_fit, fit_of, reference_of, with_fitted_log
 from navcore.foundation.errors import InputError
 from navcore.io.agreement import M2_S
@@ -113,8 +114,8 @@ def test_the_intervals_hold_the_truth_as_often_as_they_say() -> None:
 
 @pytest.mark.parametrize("late_s", [-120, -12, 12, 282])
 def test_a_clock_of_either_sign_is_found(late_s: int) -> None:
-    fit = fit_log(voyage(1, 5.0, late_s=late_s), through_water=True)
-    assert fit.delay_s is not None and fit.delay_s.value == pytest.approx(late_s, abs=1.0)
+    fit = fit_log(voyage(1, 6.0, late_s=late_s), through_water=True)
+    assert fit.delay_s is not None and abs(fit.delay_s.value - late_s) < 3.0 * fit.delay_s.deviation < 2.5
     assert fit.noise.value == pytest.approx(NOISE, rel=0.01)
     assert reference_of(fit).delay_s == max(round(fit.late_s, 3), 0.0) or late_s > 0
 
@@ -143,7 +144,7 @@ def test_on_one_heading_the_current_is_part_of_the_bias() -> None:
 
 
 def test_white_noise_alone_has_no_drift() -> None:
-    fit = fit_log(voyage(5, 3.0, drift=0.0), through_water=True)
+    fit = fit_log(voyage(5, 6.0, drift=0.0), through_water=True)
     assert fit.drift.value == 0.0 and fit.drift.low == 0.0 and fit.drift.high < 0.02
 
 

@@ -29,8 +29,8 @@ def test_the_command_has_the_fields_and_no_other_list(id: str) -> None:
     question = QUESTIONS[id]
     names = {one.name for one in dataclasses.fields(command_of(question))}
     own = {question.subject, *(one.name for one in question.options())}
-    assert own <= names and names - own <= {"set", "out", "force", "scheduler", "json", "quiet"}
-    assert ("out" in names) == bool(question.writes)
+    assert own <= names and names - own <= {"set", question.place, "force", "scheduler", "json", "quiet"}
+    assert (question.place in names) == bool(question.writes)
 
 
 @EACH
@@ -109,6 +109,7 @@ REQUIRED: dict[str, object] = {
     "objective": "settling_s",
     "vary": ["method.2.network.zeta"],
     "study": next(iter(studies())),
+    "recording": "log.csv",
 }
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from navcore.fitting.log import LogAlongTrack
+from navcore.fitting.along_track import LogAlongTrack
 from navcore.foundation.text import Text
 from navcore.sensors.true_state import horizontal_state, to_ship
 from schuler_bench.plots import style
