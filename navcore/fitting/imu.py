@@ -8,6 +8,7 @@ the same likelihood.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -95,7 +96,7 @@ class FittedImu(Answer):
     allan_accel: tuple[Allan, ...]
     disturbed_s: tuple[tuple[float, float], ...] = ()
 
-    def document(self) -> dict[str, object]:
+    def document(self) -> dict[str, Any]:
         """Return the document of interface.md."""
         fitted = {
             name: [getattr(axis, what).document(unit) for axis in getattr(self, sensor)]
@@ -138,7 +139,7 @@ class FittedImu(Answer):
                 end=end,
             )
 
-    def blocks(self) -> dict[str, object]:
+    def blocks(self) -> dict[str, Any]:
         """Return the block ``imu`` of a scenario: of each sensor the root mean square of its axes."""
         found = {}
         for name, sensor, what, unit in _FIELDS:

@@ -31,18 +31,13 @@ class Scenario(ScenarioFields):
     """A complete, checked scenario.
 
     Build it with `Scenario.parse` or `navcore.scenario.file.load`.
-
-    Attributes
-    ----------
-    refused : tuple of Refused
-        Methods that were left out when it was read, because the rest of the scenario refuses them.
     """
 
     _refused: tuple[Refused, ...] = PrivateAttr(default=())
 
     @property
     def refused(self) -> tuple[Refused, ...]:
-        """Methods that were left out."""
+        """Methods that were left out when it was read, because the rest of the scenario refuses them."""
         return self._refused
 
     @classmethod
@@ -56,7 +51,8 @@ class Scenario(ScenarioFields):
         where : str
             Named in faults.
         apart : bool
-            Leave out methods that the rest of the scenario refuses, as long as one is left.
+            Leave out methods that the rest of the scenario refuses, as long as one is left. A method that
+            reads a log where there is none is a fault all the same.
 
         Raises
         ------
@@ -72,7 +68,13 @@ class Scenario(ScenarioFields):
             raise InputError(faults_from(error, cls, data, where)) from None
         scenario = scenario.with_sensors()
         faults = list(scenario.faults())
-        refused = refused_methods(scenario.method, scenario._faults_with) if apart and faults else ()
+        # A log that is not there is wrong input (interface.md), not a method that does not suit the scenario.
+        without_log = scenario.reference.kind == "none" and any(one.reads_log for one in scenario.method)
+        refused = (
+            refused_methods(scenario.method, scenario._faults_with)
+            if apart and faults and not without_log
+            else ()
+        )
         if refused:
             places = {one.place for one in refused}
             left = tuple(one for place, one in enumerate(scenario.method) if place not in places)

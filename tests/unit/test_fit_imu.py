@@ -32,7 +32,7 @@ def standing(seed: int, hours: float = 3.0) -> ImuRecord:
         rho = math.exp(-1.0 / (RATE_HZ * tau_s))
         steps = random.normal(0.0, drift * math.sqrt(1.0 - rho**2), n)
         steps[0] = random.normal(0.0, drift)
-        slow = lfilter([1.0], [1.0, -rho], steps)
+        slow = np.asarray(lfilter([1.0], [1.0, -rho], steps))
         columns.append(mean + slow + random.normal(0.0, white * math.sqrt(RATE_HZ), n))
     return ImuRecord(np.column_stack(columns) / RATE_HZ, RATE_HZ, "standing")
 
