@@ -70,11 +70,8 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
         the output rows that were damped, the damping coefficient in force) and ``errors``, in SI units and
         radians; ``requirements`` where the scenario has any: each with its value, its verdict, the standard
         deviations that the run draws as 0, and the share of seeds that meet it; ``verdict`` on all of them.
-        An infinite value, or one that is not a number, is None.
-        radians; ``requirements`` where the scenario has any: each with its value, whether
-        it is met, the standard deviations that the run draws as 0, and the share of seeds that meet it. An
-        infinite value, or one that is not a number, is None. ``refused`` names the methods that the rest of
-        the scenario refuses, where there are any, with the reason.
+        An infinite value, or one that is not a number, is None. ``refused`` names the methods that the rest
+        of the scenario refuses, where there are any, with the reason.
 
     Examples
     --------

@@ -18,8 +18,8 @@ from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.fields import ScenarioFields
 from navcore.scenario.method import Method
 from navcore.scenario.needs import need_faults
-from navcore.scenario.requirement import clause_faults
 from navcore.scenario.refused import Refused, refused_methods
+from navcore.scenario.requirement import clause_faults
 from navcore.scenario.strapdown_faults import strapdown_faults
 
 MAX_STEPS = 3_000_000
