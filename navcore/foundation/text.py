@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from html import escape
 from typing import Any
 
@@ -105,6 +106,20 @@ def _again(forms: tuple[str, ...], values: dict[str, Any]) -> Text:
 
 def filled(template: str, values: dict[str, Any]) -> str:
     """Fill values into a template; a string among them can be quoted for HTML."""
+    for value in values.values():
+        if type(value) not in _SHORT or (type(value) is not int and len(value) > _LONGEST_KEPT):
+            return _filled(template, **values)
+    return _kept(template, **values)
+
+
+def _filled(template: str, /, **values: Any) -> str:
     return template.format(
         **{name: Words(value) if type(value) is str else value for name, value in values.items()}
     )
+
+
+_kept = lru_cache(maxsize=4096, typed=True)(_filled)
+"""The same: most texts of a page are made again with the same values at each step of a slider."""
+_LONGEST_KEPT = 200
+_SHORT = frozenset({str, int, Text})
+"""Types that are equal only where their letters are: 0.0 is equal to -0.0."""
