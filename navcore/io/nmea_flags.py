@@ -48,6 +48,14 @@ HEADING_SOURCES = {"": "", "N": "", "G": GYRO_ALONE}
 """Source of the heading of PSAT,HPR: satellites, or the gyro while they are lost."""
 
 
+OCTANS = {"00000000": "", "00000001": INVALID, "00000100": REDUCED}
+"""Status of PHINF, a word of 32 bits: some of its values. The heading is not valid; a gyro, their light or an
+accelerometer fails."""
+_HEADING_FAILS, _SENSOR_FAILS = 1 << 0, 0b111_1111 << 8
+OCTANS_STATUS = {"T": "", "E": INVALID, "I": INVALID}
+"""Status of the heading of PHOCT: valid, invalid, initialising."""
+
+
 class Flag(NamedTuple):
     """A field that says how good a reading is.
 
@@ -87,13 +95,22 @@ FLAGS = (
     Flag("PASHR", 10, ("heading",), INERTIAL),
     Flag("PSXN,20", 3, ("heading",), SEAPATH),
     Flag("PSAT,HPR", 5, ("heading",), HEADING_SOURCES),
+    Flag("PHOCT", 5, ("heading",), OCTANS_STATUS),
+    Flag("PHINF", 0, ("heading",), OCTANS),
 )
 """All that are heeded. HDT, HDG, HDM, VHW, PRDID and PSXN,23 have none (PSXN,23 has that of PSXN,20 before
-it), ZDA speaks of the time alone; ROT, VLW and all others are not read."""
+it, HEHDT the worse one of the PHINF before and behind it), ZDA speaks of the time alone; ROT, VLW and all
+others are not read."""
 
 
 def meaning(flag: Flag, field: str) -> str:
-    """Meaning of a field; of a mode of several systems (GNS) that on which all with a fix agree."""
+    """Meaning of a field; of a mode of several systems (GNS) that on which all with a fix agree; of bits."""
+    if flag.sentence == "PHINF":
+        try:
+            bits = int(field, 16)
+        except ValueError:
+            return flag.otherwise
+        return INVALID if bits & _HEADING_FAILS else REDUCED if bits & _SENSOR_FAILS else ""
     if flag.sentence != "GNS":
         return flag.meanings.get(field, flag.otherwise)
     told = {flag.meanings.get(letter, flag.otherwise) for letter in field} - {INVALID}

@@ -37,7 +37,7 @@ from navcore.io.series import (
     tidy,
 )
 
-_HEADINGS = ("HDT", "THS", "PASHR", "PSXN", "PSAT", "PRDID", "VHW", "HDG")
+_HEADINGS = ("HDT", "THS", "PHOCT", "PASHR", "PSXN", "PSAT", "PRDID", "VHW", "HDG")
 """Kinds that give the heading, the better ones first."""
 _KINDS = {
     "velocity": ("RMC", "VTG"), "water": ("VBW", "VHW"), "ground": ("VBW",), "heading": _HEADINGS,

@@ -242,6 +242,20 @@ def _psxn(fields: Fields) -> Decoded:
     }
 
 
+def _phoct(fields: Fields) -> Decoded:
+    """Attitude of Octans and PHINS, ``PHOCT,01,time,T,00,heading,T,...``; its clock may not be UTC."""
+    return {
+        "flags": fields.codes(flag_of("PHOCT", 5)),
+        "time_of_day": np.where(fields.are(2, "T"), fields.of(value.makers_time, 1), math.nan),
+        "heading": fields.headings(4),
+    }
+
+
+def _phinf(fields: Fields) -> Decoded:
+    """Status of Octans and PHINS, which speaks of their HEHDT (`_status_of_others`)."""
+    return {"role": np.full(fields.count.size, ABOUT_OTHERS)}
+
+
 def _prdid(fields: Fields) -> Decoded:
     """Attitude as RD Instruments has it: ``PRDID,pitch,roll,heading``."""
     return {"heading": fields.headings(2)}
@@ -261,7 +275,9 @@ _STANDARD: dict[str, Decoder] = {
     "ZDA": _zda,
 }
 """Decoders by the last letters of the address; an older talker may leave out the last fields."""
-_MAKERS: dict[str, Decoder] = {"PASHR": _pashr, "PRDID": _prdid, "PSAT": _psat, "PSXN": _psxn}
+_MAKERS: dict[str, Decoder] = {
+    "PASHR": _pashr, "PHINF": _phinf, "PHOCT": _phoct, "PRDID": _prdid, "PSAT": _psat, "PSXN": _psxn,
+}  # fmt: skip
 """Decoders of makers' own sentences, by the whole address."""
 KINDS = ", ".join((*sorted(_STANDARD), *_MAKERS))
 """Sentences that can be read, for messages."""
@@ -270,7 +286,7 @@ KINDS = ", ".join((*sorted(_STANDARD), *_MAKERS))
 _FEWEST = {
     "GGA": (12,), "GLL": (6, 4), "GNS": (12,), "HDG": (5,), "HDT": (2,), "RMC": (9,), "THS": (2,),
     "VBW": (10, 6), "VHW": (8,), "VTG": (8,), "ZDA": (6,),
-    "PRDID": (3,), "PSAT,HPR": (6,), "PSXN,20": (5,), "PSXN,23": (5,),
+    "PHINF": (1,), "PHOCT": (19,), "PRDID": (3,), "PSAT,HPR": (6,), "PSXN,20": (5,), "PSXN,23": (5,),
 }  # fmt: skip
 """Fields that a kind has at least, and how many an older form has, the last one filled in. A checksum proves
 that a sentence is whole; one that has neither was cut off, as by a full buffer, perhaps within a number."""
@@ -306,19 +322,46 @@ def is_used(address: str) -> bool:
 def decode(sentences: Sentences, carried: dict[str, int] | None = None) -> Readings:
     """Readings of the sentences of used kinds; ``carried`` keeps flags from one block to the next."""
     nothing = np.array((False, True, False, False, 0, math.nan, math.nan), READING)
+    carried = {} if carried is None else carried
     readings = Readings(np.full(len(sentences.addresses), nothing), [], Counter(), Counter())
     kinds = {address: _kind(address) for address in set(sentences.addresses) if is_used(address)}
     rows_of: defaultdict[str, list[int]] = defaultdict(list)
     for row, address in enumerate(sentences.addresses):
         rows_of[kinds.get(address, "")].append(row)
+    status = _status_of_others(sentences, rows_of["PHINF"], carried)
     for kind, rows in rows_of.items():
         decoder = _STANDARD.get(kind) or _MAKERS.get(kind)
         if decoder is not None:
-            fields = Fields(sentences, which := np.array(rows), {} if carried is None else carried)
-            cut = _are_cut(kind, fields)
+            fields = Fields(sentences, which := np.array(rows, int), carried)
+            cut, decoded = _are_cut(kind, fields), decoder(fields)
             readings.rows["cut"][which] = cut
-            _fill(readings, sentences.addresses, which, (fields.count > 0) & ~cut, decoder(fields))
+            if kind == "HDT" and status is not None:
+                decoded["flags"] = status[which]
+            _fill(readings, sentences.addresses, which, (fields.count > 0) & ~cut, decoded)
     return readings
+
+
+def _status_of_others(sentences: Sentences, rows: list[int], carried: dict[str, int]) -> np.ndarray | None:
+    """What the PHINF of an instrument say of its HEHDT, as numbers of flags, shape (n,); None without any.
+
+    PHINF stands behind the sentences of which it speaks, and is slower than they are: the worse one of the
+    last before and the next behind counts. Of the next block of lines nothing is known yet.
+    """
+    if not rows and not carried:
+        return None
+    which = np.array(rows, int)
+    told = Fields(sentences, which, carried).codes(flag_of("PHINF", 0))
+    sources, status = sentences.sources, np.zeros(len(sentences.addresses), np.int8)
+    spoken_of = [row for row, address in enumerate(sentences.addresses) if address == "HEHDT"]
+    for source in {sources[row] for row in (*rows, *spoken_of)}:
+        key = f"PHINF {source}"
+        own = np.flatnonzero([sources[row] == source for row in rows])
+        at = np.array([row for row in spoken_of if sources[row] == source], int)
+        codes = np.concatenate([[carried.get(key, 0)], told[own], [0]])
+        behind = np.searchsorted(which[own], at) + 1
+        status[at] = np.maximum(codes[behind - 1], codes[behind])
+        carried[key] = int(codes[-2])
+    return status
 
 
 def _fill(

@@ -24,7 +24,11 @@ BODIES = {
     "PASHR": "PASHR,23580{k}.00,20.0,T,1.0,-1.0,0.1,0.1,0.1,0.2,1,1",
     "PSXN,20": "PSXN,20,0,0,0,0",
     "PSAT,HPR": "PSAT,HPR,23580{k}.00,20.0,1.0,-1.0,N",
+    "PHOCT": "PHOCT,01,23580{k}.000,T,00,020.000,T,+000.2,T,+00.1,T,+00.1,T,0,0,0,0,0,0,0",
+    "PHINF": "PHINF,00000000",
 }
+SPOKEN_OF = {"PSXN,20": "PSXN,23,1.0,-1.0,20.0,0.1", "PHINF": "HEHDT,20.0,T"}
+"""Sentences whose readings another one flags."""
 LETTERS = sorted({letter for flag in FLAGS for letter in flag.meanings} | {"A", "V", "N", "Q", "4"})
 ROWS = [(flag, letter) for flag in FLAGS for letter in LETTERS]
 
@@ -39,8 +43,8 @@ def _lines(flag: Flag, letter: str, count: int) -> list[str]:
     lines: list[str] = []
     for k in range(count):
         lines.append(stamped(k, _body(flag, letter, k)))
-        if flag.sentence == "PSXN,20":
-            lines.append(stamped(k, "PSXN,23,1.0,-1.0,20.0,0.1"))
+        if flag.sentence in SPOKEN_OF:
+            lines.append(stamped(k, SPOKEN_OF[flag.sentence]))
     return lines
 
 
@@ -53,7 +57,8 @@ def test_a_flag_means_the_same_in_the_table_and_in_a_log(tmp_path: Path, flag: F
     for quantity in flag.quantities:
         series = read.quantities().get(quantity)
         count = 0 if series is None else int(series.valid[series.time_s < series.time_s[0] + 5.5].sum())
-        of_flag = series is not None and flag.sentence.partition(",")[0] in series.what
+        name = SPOKEN_OF.get(flag.sentence, flag.sentence).partition(",")[0]
+        of_flag = series is not None and name in series.what
         assert (count if of_flag else 0) == (0 if said == INVALID else 5)
     if said == INVALID:
         assert "flagged invalid" in told and "5 readings of the" in told
@@ -128,3 +133,22 @@ def test_speeds_that_are_empty_at_times_are_invalid_there(tmp_path: Path) -> Non
     read = read_recording(write(tmp_path / "log.txt", lines))
     assert read.ground is not None and int(np.count_nonzero(read.ground.valid)) == 30
     assert any("10 readings of the speed over ground" in words for words in read.warnings)
+
+
+def test_the_worse_status_before_or_behind_holds_for_a_heading_of_an_octans(tmp_path: Path) -> None:
+    words = ["00000021", "00000021", "00000020", "00000100", "00000000", "00000000"]
+    lines: list[str] = []
+    for k, word in enumerate(words):
+        lines += [stamped(k, f"HEHDT,{20 + k}.0,T"), stamped(k + 0.5, f"HEHDT,{20 + k}.5,T")]
+        lines += [stamped(k + 0.7, "PHTRO,0.48,M,0.43,T"), stamped(k + 0.8, f"PHINF,{word}")]
+    read = read_recording(write(tmp_path / "log.txt", lines))
+    assert read.heading is not None
+    assert np.rad2deg(read.heading.values[:, 0]).tolist() == pytest.approx(
+        [20.0 + k / 2 for k in range(6, 12)]
+    )
+    told = " ".join(read.warnings)
+    assert "6 readings of the heading (HEHDT) flagged invalid" in told
+    assert "4 readings of HEHDT are of reduced quality" in told
+    other = [stamped(k, "GPHDT,20.0,T") for k in range(6)]
+    lines = [line for pair in zip(other, lines[3::4], strict=True) for line in pair]
+    assert "flagged" not in " ".join(read_recording(write(tmp_path / "other.txt", lines)).warnings)
