@@ -58,7 +58,8 @@ def network_text(report: dict[str, Any]) -> list[str]:
     """Lines for people; rates in rad/s and in units of the Schuler frequency."""
     from navcore.foundation.earth import SPHERE
 
-    omega_s = SPHERE.schuler_frequency(0.0)
+    omega_s = report.get("omega_s_rad_s", SPHERE.schuler_frequency(0.0))
+    place = "where it was designed" if "omega_s_rad_s" in report else "on the sphere"
     settling = report["settling_s"]
     rows = [
         ["numerator", *(number(c, 6) for c in report["num"])],
@@ -78,7 +79,7 @@ def network_text(report: dict[str, Any]) -> list[str]:
         ["worst tilt", *_bound(report["worst_tilt_rad_per_mps"], UNITS["arcsec"], "arcsec")],
         ["worst velocity error", *_bound(report["worst_velocity_per_mps"], 1.0, "m/s")],
     ]
-    lines = [f"{report['id']} on the sphere, ωₛ = {omega_s:.6g} rad/s", "", *columns(rows), ""]
+    lines = [f"{report['id']} {place}, ωₛ = {omega_s:.6g} rad/s", "", *columns(rows), ""]
     for key, title in (("zeros", "zeros"), ("poles", "poles"), ("closed_loop_poles", "closed loop")):
         lines += columns([[title, "rad/s", "/ ωₛ"], *_roots(report[key], omega_s)]) + [""]
     lines += [*columns(facts), "", *_whole_system(report)]

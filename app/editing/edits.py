@@ -14,6 +14,7 @@ from navcore.motion import MOTIONS
 from navcore.motion.static import AttitudeMotion
 from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.file import blocks_to_toml, parse_toml
+from navcore.scenario.frozen import frozen_method
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import RECORDING
@@ -178,6 +179,8 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any], block:
 def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenario, int]:
     """Put a method in the place of another, or behind one that is not damped; also return its index.
 
+    Its networks keep the H(s) that they were designed with (`frozen_method`).
+
     Raises
     ------
     InputError
@@ -186,7 +189,8 @@ def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenari
     data = scenario.canonical()
     behind = index >= len(scenario.method) or scenario.method[index].undamped
     others = [m["name"] for i, m in enumerate(data["method"]) if behind or i != index]
-    block = method.model_dump(mode="json", by_alias=True, exclude_none=True)
+    taken = frozen_method(method, scenario.omega_s)
+    block = taken.model_dump(mode="json", by_alias=True, exclude_none=True)
     block["name"] = free_name(method.label(), others)
     at = index + behind
     data["method"][at : at + (not behind)] = [block]

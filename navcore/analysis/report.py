@@ -1,4 +1,7 @@
-"""Report of ``schuler network``: one network on the sphere and its closed loop (theory.md 3.6)."""
+"""Report of ``schuler network``: one network on the sphere and its closed loop (theory.md 3.6).
+
+A network that states the Schuler frequency it was designed for is judged at that one.
+"""
 
 import math
 from collections.abc import Iterable
@@ -49,7 +52,8 @@ def network_report(
         The parameters make no network, or an argument is out of range.
     """
     _check(lat_deg, log_period_s, law_step_s)
-    network = parameters.transfer(SPHERE.schuler_frequency(0.0))
+    own = parameters.stated_omega_s
+    network = parameters.transfer(SPHERE.schuler_frequency(0.0) if own is None else own)
     loop = analyse(network)
     slow = None if azimuth is None else azimuth.at_earth_rate()
     whole = whole_system(network, lat_deg * DEG, azimuth=slow)
@@ -62,6 +66,7 @@ def network_report(
     worst = worst_step(network)
     return {
         "id": network.id,
+        **({} if own is None else {"omega_s_rad_s": own}),
         "num": [float(c) for c in network.num],
         "den": [float(c) for c in network.den],
         "zeros": _pairs(network.zeros),

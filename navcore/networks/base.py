@@ -298,9 +298,25 @@ class NetworkParameters(Entry):
         """Return the values of parameters that are not given and are those of the scenario."""
         return {}
 
+    def frozen(self, omega_s: float) -> NetworkParameters:
+        """Return the network with everything given that it would else take from a scenario.
+
+        Parameters
+        ----------
+        omega_s : float
+            Schuler frequency at which it runs, rad/s.
+        """
+        del omega_s
+        return self
+
     def following(self, network: LinearNetwork) -> dict[str, Any]:
         """Return the values of the `alternatives`, computed from the network that the parameters make."""
         return {}
+
+    @property
+    def stated_omega_s(self) -> float | None:
+        """Schuler frequency that the parameters state, rad/s; None where they hold at every one."""
+        return None
 
     @property
     def external_form(self) -> str:

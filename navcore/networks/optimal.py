@@ -14,6 +14,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.networks.base import MAX_ORDER, LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.lqg import Compensator, SensorFigures, compensator, plant
+from navcore.networks.seen_at import seen_at
 from navcore.networks.state_space import state_spaces
 
 EXAMPLE_SHIP = SensorFigures(
@@ -103,13 +104,13 @@ class OptimalNetwork(NetworkParameters):
             "compass, which brings tilt and velocity near the floor; external damping only (theory.md 17)."
         ),
     )
-    gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", Text("angular random walk"), (0.0, 0.05), le=10.0)
-    gyro_instability_dph: float | None = _figure("deg/h", Text("gyro instability"), (0.0, 0.05), le=100.0)
+    gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", Text("angular random walk"), (0.0, 0.05), le=100.0)
+    gyro_instability_dph: float | None = _figure("deg/h", Text("gyro instability"), (0.0, 0.05), le=1e4)
     gyro_tau_s: float | None = _figure(
         "s", Text("gyro correlation time"), (10.0, 86400.0), ge=1.0, le=1e7, log=True
     )
     accel_vrw_ugpshz: float | None = _figure(
-        "ug/sqrt(Hz)", Text("velocity random walk"), (0.0, 100.0), le=1e5
+        "ug/sqrt(Hz)", Text("velocity random walk"), (0.0, 100.0), le=1e6
     )
     accel_instability_ug: float | None = _figure(
         "ug", Text("accelerometer instability"), (0.0, 100.0), le=1e5
@@ -122,6 +123,17 @@ class OptimalNetwork(NetworkParameters):
     log_drift_mps: float | None = _figure("m/s", Text("log drift"), (0.0, 1.0), le=50.0)
     log_drift_tau_s: float | None = _figure(
         "s", Text("log drift time"), (10.0, 36000.0), ge=1.0, le=1e7, log=True
+    )
+    omega_s_radps: float | None = quantity(
+        None,
+        unit="rad/s",
+        ge=1e-6,
+        le=1.0,
+        label=Text("designed for ωₛ"),
+        help=Text(
+            "The Schuler frequency that the network is designed for; that of the site when not given. A "
+            "result that is written holds it, so that H(s) is the same wherever it is read."
+        ),
     )
     _sensors: SensorFigures | None = PrivateAttr(default=None)
 
@@ -138,29 +150,42 @@ class OptimalNetwork(NetworkParameters):
 
     def taken(self) -> dict[str, Any]:
         """Return the figures of sensors and log that it is designed for and that are not given."""
-        figures, _ = self.figures()
-        return {
-            field: getattr(figures, name) / unit
-            for field, (name, unit) in _FIELDS.items()
-            if getattr(self, field) is None
-        }
+        values, _ = self._values()
+        return {field: value for field, value in values.items() if getattr(self, field) is None}
+
+    def frozen(self, omega_s: float) -> OptimalNetwork:
+        """Return the same H(s) with all figures and the Schuler frequency given."""
+        return self.model_copy(
+            update={"omega_s_radps": omega_s, **self.taken(), **self._given("omega_s_radps")}
+        )
+
+    def _given(self, *names: str) -> dict[str, float]:
+        return {name: value for name in names if (value := getattr(self, name)) is not None}
 
     def figures(self) -> tuple[SensorFigures, tuple[str, ...]]:
         """Figures that the network is designed for, and warnings about those that are nobody's."""
-        base, warnings = self._sensors, []
-        given = {
-            name: getattr(self, field) * unit
-            for field, (name, unit) in _FIELDS.items()
-            if getattr(self, field) is not None
-        }
-        used = SensorFigures(**{**vars(base or EXAMPLE_SHIP), **given})
+        values, warnings = self._values()
+        return SensorFigures(
+            **{name: values[field] * unit for field, (name, unit) in _FIELDS.items()}
+        ), warnings
+
+    def _values(self) -> tuple[dict[str, float], tuple[str, ...]]:
+        """Figures in the units of the fields, and warnings.
+
+        The figures in SI are made from these, so that a network whose fields are all given has exactly the
+        H(s) of one that has taken the same figures from a scenario.
+        """
+        base, warnings = self._sensors or EXAMPLE_SHIP, []
+        given = self._given(*_FIELDS)
+        values = _in_fields(base) | given
+        used = SensorFigures(**{name: values[field] * unit for field, (name, unit) in _FIELDS.items()})
         for what, missing, prefixes in (
             (Text("gyros and accelerometers"), not used.inertial, ("gyro", "accel")),
             ("log", not used.log, ("log",)),
         ):
-            if missing or (base is None and not any(name.startswith(prefixes) for name in given)):
-                example = {k: v for k, v in vars(EXAMPLE_SHIP).items() if k.startswith(prefixes)}
-                used = SensorFigures(**{**vars(used), **example, **({} if missing else given)})
+            if missing or (self._sensors is None and not any(name.startswith(prefixes) for name in given)):
+                example = {k: v for k, v in _in_fields(EXAMPLE_SHIP).items() if k.startswith(prefixes)}
+                values |= example | ({} if missing else given)
                 warnings.append(
                     Text(
                         "optimal: no random error of the {what} is given; designed for those of the "
@@ -168,16 +193,18 @@ class OptimalNetwork(NetworkParameters):
                         what=what,
                     )
                 )
-        return used, tuple(warnings)
+        return values, tuple(warnings)
 
     def transfer(self, omega_s: float) -> LinearNetwork:
-        """Return H(s) for a Schuler frequency in rad/s.
+        """Return H(s) for a Schuler frequency in rad/s; one for ``omega_s_radps`` is seen there unchanged.
 
         Raises
         ------
         InputError
             No stable network of this kind exists for these figures.
         """
+        if self.omega_s_radps is not None and self.omega_s_radps != omega_s:
+            return seen_at(self.transfer(self.omega_s_radps), omega_s)
         figures, warnings = self.figures()
         try:
             with np.errstate(all="ignore"):  # of densities whose squares are no numbers any more
@@ -208,6 +235,11 @@ class OptimalNetwork(NetworkParameters):
             )
             warnings = (*warnings, fragile)
         return replace(network, warnings=warnings)
+
+    @property
+    def stated_omega_s(self) -> float | None:
+        """The one that it was designed for, where it is given."""
+        return self.omega_s_radps
 
     @property
     def external_form(self) -> str:
@@ -241,6 +273,11 @@ class OptimalNetwork(NetworkParameters):
                 "makes a network too fast for these figures to run in double precision: must be larger"
             )
             raise refuse("rho", self.rho, allowed)
+
+
+def _in_fields(figures: SensorFigures) -> dict[str, float]:
+    """Figures by the names and in the units of the fields."""
+    return {field: getattr(figures, name) / unit for field, (name, unit) in _FIELDS.items()}
 
 
 @lru_cache(maxsize=256)

@@ -17,6 +17,7 @@ from navcore.foundation.times import in_other_unit
 from navcore.foundation.written_toml import read_toml_text, read_value
 from navcore.scenario.bounds import LARGEST_BYTES, require_bounded, require_readable
 from navcore.scenario.fields import SCHEMA
+from navcore.scenario.frozen import frozen
 from navcore.scenario.model import Scenario
 
 _NAMED = {"motion": "kind", "network": "id", "policy": "id", "switching": "id"}
@@ -216,8 +217,8 @@ def set_field(data: Any, key: str, value: Any) -> str:
 
 
 def to_toml(scenario: Scenario) -> str:
-    """Complete, resolved scenario as TOML text."""
-    return blocks_to_toml(scenario.canonical())
+    """Complete, resolved scenario as TOML text; its networks take nothing from it any more (`frozen`)."""
+    return blocks_to_toml(frozen(scenario).canonical())
 
 
 def blocks_to_toml(data: dict[str, Any]) -> str:
@@ -264,14 +265,14 @@ def names_files(scenario: Scenario) -> bool:
 
 
 def scenario_hash(scenario: Scenario) -> str:
-    """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder.
+    """SHA-256 of the canonical scenario as written; a file counts by its name and content, not its folder.
 
     Raises
     ------
     InputError
         A file that it names cannot be read.
     """
-    data = scenario.canonical()
+    data = frozen(scenario).canonical()
     for block, field in FILE_FIELDS:
         if data.get(block, {}).get(field):
             data[block][field] = _fingerprints(data[block][field], f"{block}.{field}")

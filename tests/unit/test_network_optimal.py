@@ -18,9 +18,11 @@ from navcore.foundation.errors import InputError
 from navcore.networks import MAX_ORDER, optimal, parse_network
 from navcore.networks.lqg import Compensator, compensator, plant
 from navcore.networks.optimal import EXAMPLE_SHIP, modulus_margin
-from navcore.scenario.file import load, parse_toml, to_toml
+from navcore.networks.seen_at import seen_at
+from navcore.scenario.file import load, parse_toml, scenario_hash, to_toml
 from navcore.scenario.model import Scenario
 from schuler_bench.cli import main
+from schuler_bench.editing.edits import with_design
 
 OMEGA_S = 1.24e-3
 IMU = {"gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0, "gyro_instability_dph": 0.01, "gyro_tau_s": 900.0}
@@ -44,13 +46,83 @@ def poles(found: Scenario) -> np.ndarray:
 
 
 def test_it_follows_the_sensors_of_the_scenario() -> None:
-    """Another log gives another network; the field itself stays empty, also when written and read."""
+    """Another log gives another network; the field itself stays empty."""
     one, other = scenario({}), scenario({}, reference={**LOG, "noise_mps": 1.0})
     assert not np.allclose(poles(one), poles(other))
     assert "log_noise_mps" not in one.canonical()["method"][0]["network"]
+
+
+FREEZABLE = [
+    {},
+    {"site": {"lat_deg": 71.3}},
+    {"imu": {}, "reference": {"kind": "log"}},
+    {"imu": {"gyro_arw_dpsh": 0.0037, "accel_instability_ug": 7.3, "accel_tau_s": 411.0}},
+]
+
+
+def assert_same_h(one: Any, other: Any) -> None:
+    """H(s), and the velocity feedback, to the last digit."""
+    for name in ("num", "den", "zeros", "poles"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), strict=True)
+    assert one.gain == other.gain
+
+
+@pytest.mark.parametrize("blocks", FREEZABLE)
+@pytest.mark.parametrize(
+    "network", [{"rho": 0.01, "q": 1.0}, {"realisation": "feedback", "log_noise_mps": 0.3}]
+)
+def test_a_written_result_has_the_same_h_everywhere(
+    network: dict[str, Any], blocks: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In the replay of its file, in a scenario with other sensors elsewhere, and by `schuler network`."""
+    here = scenario(network, **blocks)
+    designed = here.method[0].network.transfer(here.omega_s)
+    written = parse_toml(to_toml(here), "text")
+    replay = Scenario.parse(written)
+    assert_same_h(replay.method[0].network.transfer(here.omega_s), designed)
+    elsewhere = Scenario.parse(
+        written | {"imu": IMU, "reference": {**LOG, "noise_mps": 0.7}, "site": {"lat_deg": 5}}
+    )
+    assert_same_h(elsewhere.method[0].network.transfer(elsewhere.omega_s), designed)
+    block = ", ".join(f"{k} = {json.dumps(v)}" for k, v in written["method"][0]["network"].items())
+    assert main(["network", block, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["num"] == designed.num.tolist()
+    assert told["den"] == designed.den.tolist()
+    assert told["settling_s"] == analyse(designed).settling_s
+
+
+def test_a_written_result_is_the_same_scenario() -> None:
+    """The hash of a scenario is that of its file, which is complete; writing it again changes nothing."""
+    one = scenario({})
     again = Scenario.parse(parse_toml(to_toml(one), "text"))
-    assert again == one
-    assert np.array_equal(poles(again), poles(one))
+    assert scenario_hash(again) == scenario_hash(one)
+    assert to_toml(again) == to_toml(one)
+
+
+def test_a_network_is_seen_the_same_at_another_schuler_frequency() -> None:
+    """H(s) and the velocity feedback at any frequency do not depend on the unit of p."""
+    parameters = scenario({"realisation": "feedback"}).method[0].network
+    network = parameters.transfer(OMEGA_S)
+    other = seen_at(network, 1.1 * OMEGA_S)
+    omega = np.geomspace(1e-5, 1.0, 30)
+    np.testing.assert_allclose(other.response(omega), network.response(omega), rtol=1e-12)
+
+    def pushed(n: Any) -> np.ndarray:
+        p = 1j * omega / n.omega_s
+        return n.omega_s * np.polyval(n.feedback_p, p) / np.polyval(n.den_p, p)
+
+    np.testing.assert_allclose(pushed(other), pushed(network), rtol=1e-12)
+
+
+def test_a_design_that_is_taken_keeps_its_network() -> None:
+    """Taken into a scenario with other sensors it is what was designed."""
+    designed = scenario({})
+    changed, at = with_design(
+        scenario({"rho": 1.0}, reference={**LOG, "noise_mps": 2.0}), 0, designed.method[0]
+    )
+    omega_s = changed.omega_s
+    assert_same_h(changed.method[at].network.transfer(omega_s), designed.method[0].network.transfer(omega_s))
 
 
 def test_a_figure_given_goes_before_that_of_the_scenario() -> None:

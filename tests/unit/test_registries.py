@@ -34,6 +34,7 @@ from navcore.motion.truth import (
 )
 from navcore.networks import NETWORKS, NetworkParameters
 from navcore.scenario.file import parse_toml, to_toml
+from navcore.scenario.frozen import frozen
 from navcore.scenario.guide import guide
 from navcore.scenario.model import Scenario
 from navcore.scenario.schema_file import schema_text
@@ -125,7 +126,7 @@ def test_every_field_has_help_and_a_unit_or_a_list_of_words(part: str, name: str
 def test_it_survives_being_written_and_read(part: str, name: str, tmp_path: Path) -> None:
     scenario = scenario_of(part, name, tmp_path)
     again = Scenario.parse(parse_toml(to_toml(scenario), "text"))
-    assert again == scenario
+    assert again == frozen(scenario)
     entry = again.motion if part == "motion" else getattr(again.method[0], part)
     assert type(entry) is REGISTRIES[part][name]
 
