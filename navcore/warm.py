@@ -23,6 +23,8 @@ from navcore.alignment.fine import coarse_alignment
 from navcore.engine.ensemble import outcomes
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
+from navcore.exporting.forms import form_of
+from navcore.exporting.subject import subject_of
 from navcore.foundation.compiled import COMPILATION, PORTABLE_SETTINGS
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
@@ -94,6 +96,7 @@ def warm() -> None:
         simulate(_scenario({"duration_h": 0.02}, motion, 1.0, _POLICIES))
     _warm_track()
     _warm_coarse_alignment()
+    form_of(subject_of(_scenario({"duration_h": 0.02}, _MOTIONS[0], 1.0, [_NETWORK]), hours=0.02))
 
 
 def warm_sensors() -> None:

@@ -145,12 +145,12 @@ def _annotation(one: Option) -> Any:
     words = f"{one.help} One of {', '.join(one.choices)}." if one.choices else one.help
     if one.many:
         return UseAppendAction[_with(tuple[plain, ...], one.metavar, words)]
-    return _with(plain | None if one.default is None else plain, one.metavar, words)
+    return _with(plain | None if one.default is None else plain, one.metavar, words, one.flag.lstrip("-"))
 
 
 def _default(one: Option) -> Any:
     return () if one.many and one.default is not ... else one.default
 
 
-def _with(kind: Any, metavar: str, words: str) -> Any:
-    return Annotated[kind, arg(metavar=metavar, help=words)]
+def _with(kind: Any, metavar: str, words: str, name: str | None = None) -> Any:
+    return Annotated[kind, arg(name=name, metavar=metavar, help=words)]

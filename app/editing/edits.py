@@ -177,9 +177,7 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any], block:
 
 
 def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenario, int]:
-    """Put a method in the place of another, or behind one that is not damped; also return its index.
-
-    Its networks keep the H(s) that they were designed with (`frozen_method`).
+    """Put a method, its H(s) as designed, in place of another or behind an undamped one; return its index too.
 
     Raises
     ------
@@ -189,8 +187,8 @@ def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenari
     data = scenario.canonical()
     behind = index >= len(scenario.method) or scenario.method[index].undamped
     others = [m["name"] for i, m in enumerate(data["method"]) if behind or i != index]
-    taken = frozen_method(method, scenario.omega_s)
-    block = taken.model_dump(mode="json", by_alias=True, exclude_none=True)
+    method = frozen_method(method, scenario.omega_s)
+    block = method.model_dump(mode="json", by_alias=True, exclude_none=True)
     block["name"] = free_name(method.label(), others)
     at = index + behind
     data["method"][at : at + (not behind)] = [block]

@@ -190,12 +190,7 @@ class NetworkParameters(Entry):
         return self.transfer(EARTH_RATE)
 
     def transfer(self, omega_s: float) -> LinearNetwork:
-        """Return H(s) for a Schuler frequency.
-
-        Parameters
-        ----------
-        omega_s : float
-            Schuler frequency, rad/s.
+        """Return H(s) for a Schuler frequency in rad/s.
 
         Raises
         ------
@@ -245,12 +240,8 @@ class NetworkParameters(Entry):
 
         Parameters
         ----------
-        damping_ratio : float
-            Wanted, 0.01..1.
-        frequency : float
-            Wanted natural frequency |p|, rad/s.
-        omega_s : float
-            Schuler frequency, rad/s.
+        damping_ratio, frequency, omega_s : float
+            Wanted, 0.01..1; wanted natural frequency |p| and Schuler frequency, rad/s.
 
         Raises
         ------
@@ -299,14 +290,7 @@ class NetworkParameters(Entry):
         return {}
 
     def frozen(self, omega_s: float) -> NetworkParameters:
-        """Return the network with everything given that it would else take from a scenario.
-
-        Parameters
-        ----------
-        omega_s : float
-            Schuler frequency at which it runs, rad/s.
-        """
-        del omega_s
+        """Return the network that takes nothing from its scenario, at a Schuler frequency in rad/s."""
         return self
 
     def following(self, network: LinearNetwork) -> dict[str, Any]:

@@ -114,10 +114,10 @@ def flag_of(name: str) -> str:
 
     Examples
     --------
-    >>> flag_of("default_limits")
-    '--default-limits'
+    >>> flag_of("default_limits"), flag_of("as_")
+    ('--default-limits', '--as')
     """
-    return f"--{name.replace('_', '-')}"
+    return f"--{name.rstrip('_').replace('_', '-')}"
 
 
 class Question(Parameters):

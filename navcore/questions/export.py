@@ -1,0 +1,84 @@
+"""Export: the law of a method as files for a navigation computer."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+from navcore.foundation.answers import Answer
+from navcore.foundation.out import PathLike, placing, refused, require_folder, utf8, writing
+from navcore.foundation.parameters import quantity
+from navcore.foundation.text import Text
+from navcore.questions.base import Cancelled, Progress, Question, Writes, option, unless_stopped
+
+if TYPE_CHECKING:
+    from navcore.exporting.exported import Exported
+
+
+class ExportQuestion(Question):
+    """The law of a method as code, with vectors that prove it."""
+
+    title: ClassVar[str] = Text("Export")
+    help: ClassVar[str] = Text(
+        "Write the law of a method as code for a navigation computer, with test vectors of its scenario."
+    )
+    keeps: ClassVar[bool] = False
+    stopped: ClassVar[str] = Text("Stopped: nothing was exported.")
+    writes: ClassVar[Writes] = "folder"
+    written: ClassVar[str] = Text("the files: made if need be, else empty")
+    example: ClassVar[str] = """\
+>>> from navcore import export, load
+>>> found = export(load("zha-external"), "classic2", as_="c")
+>>> sorted(found.files)
+['schuler_law.c', 'schuler_law.h', 'test.c', 'vectors.csv']"""
+    id: Literal["export"] = "export"
+    method: str = option(
+        "",
+        label=Text("method"),
+        metavar="NAME|N",
+        help=Text("Name of the method, or its number from 0; may be left out where there is only one."),
+    )
+    as_: Literal["c"] = option("c", label=Text("as"), help=Text("What the files are."))
+    rate: float | None = quantity(
+        None,
+        unit="Hz",
+        ge=0.1,
+        le=200.0,
+        label=Text("rate of the law"),
+        help=Text("Calls of the law a second; as the scenario runs it where none is given."),
+    )
+    name: str = option(
+        "schuler_law",
+        label=Text("name in the files"),
+        metavar="PREFIX",
+        help=Text("Begins the names of files, functions and types."),
+    )
+
+    def answer(self, progress: Progress | None = None, cancelled: Cancelled | None = None) -> "Exported":
+        """Read the law, and replay the scenario."""
+        from navcore.exporting.exported import exported
+
+        found = exported(self.scenario, self.method, target=self.as_, rate_hz=self.rate, prefix=self.name)
+        unless_stopped(cancelled)
+        return found
+
+    def require_free(self, out: Path, reads: Iterable[PathLike] = (), *, force: bool = False) -> None:
+        """Refuse a folder in which there is something already: files of two exports must not mix."""
+        del force
+        require_folder(out, (), reads)
+        with writing(out):
+            if out.is_dir() and any(out.iterdir()):
+                raise refused(out, Text("is not empty: give a folder that is empty or does not exist"))
+
+    def write(
+        self, answer: Answer, out: Path, reads: Iterable[PathLike] = (), *, force: bool = False
+    ) -> None:
+        """Write the files."""
+        self.require_free(out, reads, force=force)
+        texts = self.texts(answer)
+        with placing(out, tuple(texts), [*reads, *self.recordings()]) as hidden:
+            for name, text in texts.items():
+                (hidden / name).write_bytes(utf8(text))
+
+    def texts(self, answer: Answer) -> dict[str, str]:
+        """Return the files of the export."""
+        return vars(answer)["files"]
