@@ -177,7 +177,7 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any], block:
 
 
 def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenario, int]:
-    """Put a method, its H(s) as designed, in place of another or behind an undamped one; return its index too.
+    """Put a method, its H(s) as designed, in place of another or behind an undamped one; also its index.
 
     Raises
     ------

@@ -4,7 +4,7 @@ The law that runs in the program is written in a small part of Python, the part 
 numbers, records, named tuples, loops and conditions. This module follows its functions with the parameters of
 one method at hand. What depends on them alone is decided here; what is left is a small program
 (`navcore.exporting.ir`) with the method's own policy, switching method and network, and nothing of the
-others. So a policy, a switching method or a network that is added to the law can be exported without a line here.
+others. So a policy, a switching method or a network that is added to the law is exported without a line here.
 """
 
 from __future__ import annotations
