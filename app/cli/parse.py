@@ -15,6 +15,7 @@ from schuler_bench.cli.asking import command_of
 from schuler_bench.cli.bench import BenchCommand
 from schuler_bench.cli.check import CheckCommand
 from schuler_bench.cli.network import NetworkCommand
+from schuler_bench.cli.parts import PartsCommand
 from schuler_bench.cli.presets import PresetsCommand
 from schuler_bench.cli.serve import ServeCommand
 from schuler_bench.cli.study import SCHEDULER, OnCluster
@@ -29,6 +30,7 @@ _COMMANDS = {
     "serve": ServeCommand,
     "network": NetworkCommand,
     "presets": PresetsCommand,
+    "parts": PartsCommand,
     "check": CheckCommand,
     **{id: command_of(question) for id, question in QUESTIONS.items()},
     "study": command_of(QUESTIONS["study"], OnCluster, SCHEDULER),

@@ -19,6 +19,7 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import RECORDING
 from schuler_bench.editing.form import Path
+from schuler_bench.editing.parts import PARTS, choose_part, shown_part
 
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),
@@ -55,6 +56,8 @@ def with_value(
     if path[-1] == "gyrocompass":  # a block that is there or not
         value = {} if value else None
         data["method"][int(path[1])].pop("azimuth", None)
+    if path in PARTS:
+        value = choose_part(scenario, data, path, value)
     _place(data, path, value)
     if path == ("run", "fidelity") and value != "strapdown":
         _leave_strapdown(data)
@@ -151,7 +154,7 @@ def value_at(scenario: Scenario, path: Path) -> Any:
         if place is None:
             return None
         place = place[step] if isinstance(step, int) else getattr(place, step)
-    return place
+    return shown_part(place, path)
 
 
 def values_at(scenario: Scenario, paths: Iterable[Path]) -> dict[Path, Any]:

@@ -19,6 +19,8 @@ from navcore.foundation.parameters import allowed_range, bounds_of, element_of, 
 from navcore.foundation.text import Text
 
 Path = tuple[str | int, ...]
+NONE = "none"
+"""Choice of a field that may be left out: none of its values."""
 Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]
 
 _AXES = {2: ("E", "N"), 3: ("x", "y", "z")}
@@ -246,6 +248,8 @@ def choices_of(info: FieldInfo) -> tuple[str, ...]:
 def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpec]:
     annotation = _without_none(info.annotation)
     offered = choices_of(info)
+    if offered and info.default is None:
+        offered = (NONE, *offered)
     kind: Kind | None = "choice" if offered else _PLAIN.get(annotation)
     if kind is None and get_origin(annotation) is tuple:
         items = [_bare(item) for item in get_args(annotation)]

@@ -12,6 +12,7 @@ from navcore.io.stretches import FASTEST_MPS
 from navcore.motion.truth import LAT, Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ErrorPart
+from navcore.sensors.data_sheets import data_sheets, differing
 from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.recorded import recording_notices, short_run_notices
 
@@ -31,6 +32,7 @@ def input_notices(scenario: Scenario) -> tuple[str, ...]:
     return (
         *recording_notices(scenario.motion, scenario.reference),
         *beside,
+        *_parts_overruled(scenario),
         *short,
         *scenario.motion.ending(end_s),
         *_waves_without_effect(scenario),
@@ -66,6 +68,19 @@ def _beside_recordings(scenario: Scenario) -> Iterator[str]:
         "{given}",
         given=", ".join(given),
     )
+
+
+def _parts_overruled(scenario: Scenario) -> Iterator[str]:
+    """Say which figures of a part of the list do not count, because a field beside it gives another one."""
+    for block in (scenario.imu, scenario.reference):
+        sheet = data_sheets().get(block.part or "")
+        if sheet is not None and (fields := [*differing(block, sheet)]):
+            yield Text(
+                '{block}.part = "{part}": {fields} given beside it count in the place of its figures',
+                block=sheet.block,
+                part=sheet.name,
+                fields=", ".join(fields),
+            )
 
 
 def _given(block: Any, name: str) -> Iterator[str]:

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextvars import copy_context
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pydantic import Field, create_model
+from pydantic import Field, create_model, model_validator
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import FileName, choice, quantity
@@ -17,6 +17,7 @@ from navcore.foundation.text import Text
 from navcore.io.column_map import map_field
 from navcore.motion.truth import Truth
 from navcore.sensors.base import SensorErrors
+from navcore.sensors.data_sheets import names_of, with_part
 from navcore.sensors.imu_errors import TERMS
 from navcore.sensors.imu_errors.base import Clock, Part
 from navcore.sensors.imu_errors.triad import Triad
@@ -39,6 +40,13 @@ RECORDING = ("file", "map", "axes", "begin_s")
 """Fields of the block that say which recording is used; the others are errors."""
 
 
+if TYPE_CHECKING:
+    PartName = str
+else:
+    PartName = Literal[names_of("imu")]
+    """Name of an IMU in the list."""
+
+
 class Imu(_Errors):
     """Block ``imu``: errors of gyros and accelerometers in body axes, measured minus true.
 
@@ -47,6 +55,14 @@ class Imu(_Errors):
     A recorded IMU (``file``, strapdown only) brings its own errors: those given here are then not used.
     """
 
+    part: PartName | None = Field(
+        default=None,
+        description=Text(
+            "An IMU from the list (schuler parts): its published figures fill the fields that are not given "
+            "beside it."
+        ),
+        json_schema_extra={"label": Text("part")},
+    )
     file: FileName | None = Field(
         default=None,
         description=Text(
@@ -73,6 +89,12 @@ class Imu(_Errors):
         label="skip",
         help=Text("Time of the recorded IMU that is left out before."),
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_part(cls, data: Any) -> Any:
+        """Take the figures of the part."""
+        return with_part(data, "imu")
 
     def all_parts(self) -> tuple[Part, ...]:
         """Contributions of all terms, whether they do anything or not."""

@@ -3,16 +3,17 @@
 import math
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, create_model
+from pydantic import Field, create_model, model_validator
 
 from navcore.foundation.parameters import FileName, Parameters, bounded, quantity, vector_quantity
 from navcore.foundation.repeated import Repeated
 from navcore.foundation.text import Text
 from navcore.io.column_map import map_field
 from navcore.sensors.base import NO_DRIFT, modelled_drift
+from navcore.sensors.data_sheets import names_of, with_part
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.rounding import standing_rounding
@@ -80,6 +81,13 @@ else:
     _Errors = create_model("_Errors", __base__=(*TERMS[::-1], _Kind))
 
 
+if TYPE_CHECKING:
+    PartName = str
+else:
+    PartName = Literal[names_of("reference")]
+    """Name of a log in the list."""
+
+
 class Reference(_Errors):
     """Block ``reference``: the velocity that external damping compares with.
 
@@ -92,6 +100,14 @@ class Reference(_Errors):
     `RECORDED_ONLY`.
     """
 
+    part: PartName | None = Field(
+        default=None,
+        description=Text(
+            "A log from the list (schuler parts): its published figures fill the fields that are not given "
+            "beside it."
+        ),
+        json_schema_extra={"label": Text("part")},
+    )
     outage: tuple[Outage, ...] = Field(
         default=(), max_length=200, description=Text("Times without log, [[reference.outage]].")
     )
@@ -164,6 +180,12 @@ class Reference(_Errors):
             "the track is of: the velocity that turning and rolling give it there is taken off."
         ),
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_part(cls, data: Any) -> Any:
+        """Take the figures of the part."""
+        return with_part(data, "reference")
 
     def all_parts(self) -> tuple[LogPart, ...]:
         """Contributions of all terms, whether they do anything or not."""

@@ -9,7 +9,7 @@ from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import allowed_range, element_of, extra_of, vector_quantity
 from navcore.sensors.imu import Imu
 
-RECORDING = ("file", "map", "axes", "begin_s")
+RECORDING = ("file", "map", "axes", "begin_s", "part")
 DEVIATIONS = ("gyro_bias_std_dph", "accel_bias_std_ug")
 """For the error budget: not given by default."""
 ERRORS = {name: info for name, info in Imu.model_fields.items() if name not in (*RECORDING, *DEVIATIONS)}

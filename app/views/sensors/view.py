@@ -8,7 +8,7 @@ from schuler_bench.editing import form
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import FieldsView, Tab, if_user
 
-_FIRST = 8
+_FIRST = 9
 """Fields of the IMU model, in its order, that are shown without asking."""
 _RECORDED_ONLY = ("axes", "begin_s")
 
@@ -24,7 +24,7 @@ class SensorsView(FieldsView):
         """Make the widgets."""
         super().build(tab)
         gui = self.frame.gui
-        self._specs = form.fields(Imu, ("imu",))
+        self._specs = sorted(form.fields(Imu, ("imu",)), key=lambda spec: spec.path[-1] != "part")
         with tab:
             gui.add_html(
                 notices.small(Text("Measured minus true, body axes x starboard, y forward, z up.")), order=0
