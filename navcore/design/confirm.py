@@ -18,7 +18,7 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
 
 SEEDS = 32
-MUCH = 0.2
+LEAST = 0.01
 """Relative growth of an error from which a proposal says so."""
 _COMPARED = tuple(f"{kind.name}_rms" for kind in KINDS)
 
@@ -73,15 +73,22 @@ class Confirmed:
         return self.objective.high is None or self.objective.high < 0.0
 
     def worse(self) -> Iterator[str]:
-        """Name what is much larger after it: beyond chance, and by more than `MUCH`."""
+        """Name what is larger after it: beyond chance, and by more than `LEAST`."""
         for name, change in self.changes.items():
             if change.before is None or change.after is None or change.low is None or change.low <= 0.0:
                 continue
-            if change.after > (1.0 + MUCH) * change.before:
+            if change.after > 2.0 * change.before:
                 yield Text(
                     "{name} is {times} times as large after it, over {seeds} seeds of the run",
                     name=name,
                     times=number(change.after / change.before, 3) if change.before else "infinitely many",
+                    seeds=self.seeds,
+                )
+            elif change.after > (1.0 + LEAST) * change.before:
+                yield Text(
+                    "{name} is {percent} % larger after it, over {seeds} seeds of the run",
+                    name=name,
+                    percent=number(100.0 * (change.after / change.before - 1.0), 2),
                     seeds=self.seeds,
                 )
 

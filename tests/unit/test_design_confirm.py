@@ -193,6 +193,12 @@ def test_a_proposal_without_a_proven_gain_is_none() -> None:
     assert Confirmed(32, {}).gains is None
     (said,) = Confirmed(32, {"position_rms": low, "heading_rms": ruined}).worse()
     assert said.startswith("heading_rms is 66.6 times as large after it")
+    costs = {
+        "position_rms": Change(3790.0, 4204.0, 414.0, 308.0, 519.0),
+        "heading_rms": Change(1.908, 1.9, -0.01, -0.09, 0.06),
+    }
+    (said,) = Confirmed(32, costs).worse()
+    assert said == "position_rms is 11 % larger after it, over 32 seeds of the run"
 
 
 def test_the_setting_stays_where_no_gain_is_proven(
