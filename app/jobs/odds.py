@@ -14,6 +14,7 @@ from schuler_bench.jobs.asking import Asker
 
 if TYPE_CHECKING:
     from navcore.design.shares import Share
+    from navcore.engine.measures import SeedShare
 
 STILL_S = 0.7
 """The seeds of a scenario are run once it was unchanged for so long."""
@@ -79,6 +80,14 @@ class Judge(Asker):
         """Give the share of a method in a scenario; None where it is not known."""
         with self._lock:
             return self.known.get(method) if without_methods(scenario) == self._base else None
+
+    def shares(self, scenario: Scenario) -> tuple[SeedShare, ...]:
+        """Give the shares of all methods of a scenario, for its metrics; none where one is not known yet."""
+        from navcore.design.run_shares import seed_share
+
+        found = [self.odds(scenario, method) for method in scenario.method]
+        known = [seed_share(one.share, one.seeds) for one in found if one is not None]
+        return tuple(known) if len(known) == len(found) else ()
 
     def learn(self, scenario: Scenario, method: Any, odds: Odds) -> None:
         """Take over what other runs have said of a method."""

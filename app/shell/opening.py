@@ -165,7 +165,8 @@ class Opening:
         if name == SCENARIO:
             content = to_toml(with_plain_names(scenario)).encode()
         elif run is not None:
-            content = as_json(metrics(run), indent=True)
+            shares = self._session.searches.judge.shares(run.scenario)
+            content = as_json(metrics(run, shares), indent=True)
         else:
             notices.tell(
                 self._client, Text("No run yet"), [Text("there are no numbers to download")], "warning"

@@ -62,9 +62,10 @@ def run_shares(
     if len(found) < seeds:
         return ()
     ship = Ship(scenario, True, TUNING_INTERVALS, drawn=True)
-    return tuple(_shown(share, seeds) for share in shares_of(ship, scenario.method, found))
+    return tuple(seed_share(share, seeds) for share in shares_of(ship, scenario.method, found))
 
 
-def _shown(share: Share, seeds: int) -> SeedShare:
+def seed_share(share: Share, seeds: int) -> SeedShare:
+    """Share of a design as metrics hold it, of so many seeds."""
     limits = tuple(one.judgement for one in share.limits)
     return SeedShare(seeds, share.met, (share.low, share.high), limits)

@@ -7,7 +7,9 @@ import pytest
 
 from navcore.design.designs import designs
 from navcore.design.judged import Designs
+from navcore.design.run_shares import run_shares
 from navcore.design.stated import assumed_zero
+from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.questions.design import DesignQuestion
@@ -60,8 +62,13 @@ def test_shares_are_those_of_the_command_and_a_method_that_stays_is_not_run_agai
     wanted = designs(ship, 12, as_set=True)
     found = sorted((one.share.method.label(), one.share.met) for one in odds if one is not None)
     assert found == shares(wanted) and {one.seeds for one in odds if one is not None} == {12}
+    # the metrics that the page saves hold them as those of a run do
+    saved = metrics(simulate(ship), judging.shares(ship))["methods"]
+    of_run = metrics(simulate(ship), run_shares(ship, 12))["methods"]
+    assert [one["requirements"] for one in saved] == [one["requirements"] for one in of_run]
+    assert "seeds" in saved[0]["requirements"][0] or "share" in saved[0]["requirements"][0]
     changed = with_value(ship, ("method", 2, "network", "zeta"), 0.6)
-    assert judging.odds(changed, changed.method[2]) is None
+    assert judging.odds(changed, changed.method[2]) is None and judging.shares(changed) == ()
     judging.judge(changed)
     assert judging.wait_idle(120.0)
     assert judging.asked is not None and [m.name for m in judging.asked.scenario.method] == ["complementary"]
