@@ -37,6 +37,23 @@ def input_notices(scenario: Scenario) -> tuple[str, ...]:
         *scenario.motion.ending(end_s),
         *_waves_without_effect(scenario),
         *_too_fast_a_log(scenario),
+        *_uneven_rows(scenario),
+    )
+
+
+def _uneven_rows(scenario: Scenario) -> Iterator[str]:
+    """Say where the output rows stand when their interval is no multiple of the step."""
+    step_s = scenario.sampling.record_step_s if scenario.strapdown else scenario.run.step_s
+    wanted = scenario.run.output_step_s
+    if wanted <= step_s or abs(wanted / step_s - round(wanted / step_s)) < 1e-6 * wanted / step_s:
+        return
+    yield Text(
+        "run.output_step_s = {wanted:g} is no multiple of the step of {step_s:g} s: the rows stand at the "
+        "nearest steps, {below:g} to {above:g} s apart",
+        wanted=wanted,
+        step_s=step_s,
+        below=math.floor(wanted / step_s) * step_s,
+        above=math.ceil(wanted / step_s) * step_s,
     )
 
 

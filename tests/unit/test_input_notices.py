@@ -83,3 +83,11 @@ def test_waves_in_a_channel_run_say_why_they_change_nothing(blocks: dict[str, An
     )
     apart = np.abs(rough - calm).max(axis=0) / np.maximum(np.abs(calm).max(axis=0), 1e-30)
     assert apart.max() < 1e-8 or not told
+
+
+@pytest.mark.parametrize(("output_s", "told"), [(3.3, True), (3.0, False), (0.3, False), (2.5, True)])
+def test_rows_that_cannot_stand_at_their_interval_are_told(output_s: float, told: bool) -> None:
+    said = warnings_of(run={"duration_h": 0.01, "step_s": 1.0, "output_step_s": output_s})
+    assert ("no multiple of the step of 1 s" in said) is told
+    if output_s == 3.3:
+        assert "3 to 4 s apart" in said

@@ -32,6 +32,8 @@ def test_the_indices_of_a_known_function(tmp_path):
         assert one["first"]["value"] == pytest.approx(first, abs=0.05)
         assert one["total"]["value"] == pytest.approx(total, abs=0.05)
         assert one["total"]["low"] < one["total"]["value"] < one["total"]["high"]
+    again = sensitivity.sobol(_ishigami(draws - math.pi), np.ones(len(numbers), bool))
+    assert again == found, "the intervals come from random draws without a seed"
 
 
 def test_a_run_without_a_value_takes_the_indices_away(tmp_path):
