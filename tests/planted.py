@@ -274,11 +274,20 @@ def _outage(content: bytes) -> bytes:
     )
 
 
+def _cut_off(content: bytes) -> bytes:
+    """Sentences without a checksum, of which some end within a number."""
+    lines = [line.partition("*")[0] for line in content.decode().splitlines()]
+    return "".join(
+        f"{line[:-3] if 'HDT' in line and k % 9 == 0 else line}\n" for k, line in enumerate(lines)
+    ).encode()
+
+
 FILE_FAULTS: dict[str, tuple[str, str, Callable[[bytes], bytes]]] = {
     "every line twice": ("NMEA", "track", _lines(lambda line: f"{line}\n{line}")),
     "every row twice": ("CSV", "track", _lines(lambda line: line if line[:1] == "u" else f"{line}\n{line}")),
     "the file behind itself": ("CSV", "log", lambda content: content + content.partition(b"\n")[2]),
     "NUL before each sentence": ("NMEA", "track", lambda content: content.replace(b"$", b"\0$")),
+    "sentences that are cut off": ("NMEA", "track", _cut_off),
     "simulated": ("NMEA", "track", _bodies(",,,A", ",,,S")),
     "estimated": ("NMEA", "track", _bodies(",1,08,", ",6,08,")),
     "not valid": ("NMEA", "track", _bodies(",,,A", ",,,N")),

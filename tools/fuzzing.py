@@ -10,7 +10,7 @@ import sys
 import time
 import traceback
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from importlib import import_module
 from io import BytesIO
@@ -29,13 +29,16 @@ _ROWS = 70
 _TOKENS = tuple(
     rb"""nan -inf 1e400 -1e308 - 0x1p3 1_0 1,5 99999999999 1e18 12:61:00 2024-02-30T00:00:00Z 31/12/99
     19+366:00:00:00 " ' $ * ! # % ; | \ S utc date time_(ms) lat_(rad) gps_week sog_(km/h) gyro_x_(deg/h)
-    acc_z_[g] hemisphere
+    acc_z_[g] hemisphere julian_day mjd time_(GPS) 1,234 1.234,5 1,234,567 GyrX Status
     $GPZDA,240000.00,31,02,0000,,*6B <trkpt>""".split()
 ) + (b"", b"\xc3\xa9", b"\xff", b"\0", b"\n", b"\r", b"\t", b" ")
 
 
 def seeds(folder: Path) -> list[bytes]:
-    """Write small good files: NMEA 0183, tables with maps, containers, an IMU; GPX and PSINS text too."""
+    """Write small good files: NMEA 0183, tables with maps, containers, an IMU; GPX and PSINS text too.
+
+    The first ones are tables with their maps, which `read_by_all` maps by damaged maps.
+    """
     from navcore.checks.map_guess import guessed_map
     from tests import planted
 
@@ -45,15 +48,60 @@ def seeds(folder: Path) -> list[bytes]:
     for table in [file for file in files if file.suffix == ".csv"]:
         files.append(table.with_suffix(".map"))
         files[-1].write_text(guessed_map(str(table)), encoding="utf-8")
-    found = [file.read_bytes() for file in files]
+    found = [file.read_bytes() for file in (*files, *_containers(folder, track))]
+    found += _texts()
     fixes = zip(track["lat"].tolist(), track["lon"].tolist(), strict=True)
     points = "".join(
-        f'<trkpt lat="{lat}" lon="{lon}"><time>2024-05-13T09:00:{k % 60:02d}Z</time></trkpt>\n'
+        f'<trkpt lat="{lat}" lon="{lon}"><time>2024-05-13T09:{k // 60:02d}:{k % 60:02d}Z</time></trkpt>\n'
         for k, (lat, lon) in enumerate(fixes)
     )
     gpx = f'<?xml version="1.0"?>\n<gpx version="1.1"><trk><trkseg>\n{points}</trkseg></trk></gpx>\n'
     psins = "%PSINS\n0 0 0 0 0 0\n34 108 380 0 10 9.8\n.1 .1 .1 1 1 1\n" + "1 2 3 4 5 9800\n" * _ROWS
     return [*found, gpx.encode(), psins.encode()]
+
+
+def _containers(folder: Path, track: dict[str, Any]) -> Iterator[Path]:
+    """Yield a NetCDF file of the classic format, HDF5 with groups, and MAT files with structs."""
+    import h5py
+    from scipy.io import netcdf_file, savemat
+
+    ship = {name: track[name] for name in ("lat", "lon", "heading")}
+    netcdf, hdf = folder / "nav.nc", folder / "nav.h5"
+    with netcdf_file(str(netcdf), "w") as file:
+        file.createDimension("time", _ROWS)
+        for name, values in (("time", track["time"] - 315964800.0 + 18.0), *ship.items()):
+            variable = file.createVariable(name, "f8", ("time",))
+            variable[:] = values
+            variable.units = "seconds since 1980-01-06" if name == "time" else "degrees"
+            variable.long_name = "GPS time" if name == "time" else name
+    yield netcdf
+    with h5py.File(hdf, "w") as file:
+        for name, values in (("utc", track["time"]), *ship.items()):
+            held = file.create_dataset(f"ship/{name}", data=values)
+            held.attrs["scale_factor"], held.attrs["_FillValue"] = 1.0, -9999.0
+    yield hdf
+    for name, packed in (("struct.mat", False), ("packed.mat", True)):
+        fields = {"unix_time": track["time"], **ship}
+        savemat(folder / name, {"nav": {"ref": fields}, "rate": 1.0}, do_compression=packed)
+        yield folder / name
+
+
+def _texts() -> list[bytes]:
+    """Tables with groups of three digits, of ArduPilot and with Julian dates; sentences of an Octans."""
+    tables = (
+        ("time_ms;speed_mps;heading_deg", lambda k: f"{1000 * k:,};5.0;90.0"),
+        ("t_s;speed_kn;steuerkurs", lambda k: f"{k},5;1.000,5;{90 + k},25"),
+        ("TimeUS,I,Status,GWk,Lat,Lng,Spd,GCrs", lambda k: f"{10**6 * k},{k % 2},3,2314,45.{k:03d},12.1,5,8"),
+        ("TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ", lambda k: f"{20000 * k},0,.001,.002,.003,.1,.2,-9.8"),
+        ("julian_day,latitude,longitude,heading", lambda k: f"{2460444 + k / 86400:.8f},.78{k:03d},.21,.14"),
+        ("year,doy,heading", lambda k: f"2024,{138 + k / 86400:.8f},{k}"),
+    )
+    octans = "".join(
+        f"$GPZDA,1200{k % 60:02d},13,05,2024,00,00\n$HEHDT,{k}.5,T\n$PHINF,0000{k:04X}\n"
+        for k in range(_ROWS)
+    )
+    found = ["\n".join([header, *map(row, range(_ROWS))]) + "\n" for header, row in tables]
+    return [text.encode() for text in (*found, octans)]
 
 
 def damaged(good: list[bytes]) -> st.SearchStrategy[bytes]:

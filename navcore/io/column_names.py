@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from navcore.io.dialects import meant
 from navcore.io.times.named_counts import COUNT_NAMES, NamedCount, named_count
 from navcore.io.written_units import UNITS, unaccented, unit_of, without_brackets, written
 
@@ -199,10 +200,11 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
     positions and a course, without a heading, is a receiver's: over ground.
     """
     best: dict[str, tuple[int, Column]] = {}
-    for index, name in enumerate(names):
+    for index, name in enumerate(meant(names)):
         rank, column = _meaning(index, name)
         if column is None or column.misfit:
             continue
+        column = replace(column, name=names[index].strip())
         if column.stem not in best or rank < best[column.stem][0]:
             best[column.stem] = rank, column
     chosen = {stem: column for stem, (_, column) in best.items()}
@@ -248,10 +250,10 @@ def names_unit(column: Column) -> bool:
 def other_columns(names: Sequence[str], used: Mapping[str, Column]) -> list[Column]:
     """Columns whose quantity is read from another column."""
     places = {column.index for column in used.values()}
-    meant = (_meaning(index, name)[1] for index, name in enumerate(names) if index not in places)
+    others = (_meaning(index, name)[1] for index, name in enumerate(meant(names)) if index not in places)
     return [
-        column
-        for column in meant
+        replace(column, name=names[column.index].strip())
+        for column in others
         if column is not None and column.stem in QUANTITIES and column.stem in used and not column.unknown
         and not column.misfit
     ]  # fmt: skip

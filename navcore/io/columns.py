@@ -278,7 +278,7 @@ def _without_placeholders(table: Table) -> Table:
     if {"lat", "lon"} <= no_reading.keys():
         no_reading["lat"] = no_reading["lon"] = no_reading["lat"] & no_reading["lon"]
     if "cog" in table.values and any(gone.any() for gone in no_reading.values()):
-        no_reading["cog"] = table.values["cog"] == AIS_NO_COURSE
+        no_reading["cog"] |= table.values["cog"] == AIS_NO_COURSE
     for stem, values in table.values.items():
         low, high = table.columns[stem].limits
         gone = np.isin(values, _MISSING_NUMBERS) & ~((values >= low) & (values <= high))

@@ -37,8 +37,10 @@ from navcore.io.columns import (
 )
 from navcore.io.csv_times import timed, times_of_rows
 from navcore.io.decimal_signs import signs_of, signs_of_map
+from navcore.io.dialects import dialect_words, instance_place, instance_words
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
+from navcore.io.known_files import DATAFLASH
 from navcore.io.mapped_rows import mapped_layout, skip_bad
 from navcore.io.rows import Rows, split_line
 from navcore.io.series import LeftOut, Recording
@@ -52,6 +54,8 @@ from navcore.io.written_units import without_brackets
 
 def recognises(candidate: Candidate) -> bool:
     """Whether a header names a known column, or the lines look like a table of numbers."""
+    if DATAFLASH.match(candidate.text):
+        return False
     head = head_of_text(candidate.text)
     separator, header_line, header = layout_of(head)
     if known_columns(header[:MOST_COLUMNS]):
@@ -80,7 +84,8 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
     table = _table(path.name, rows, column_map, lambda: _row_ids(path.name, content.text, rows))
     others = ["" if index in rows.heeded else name for index, name in enumerate(rows.header)]
     unused = column_warnings(others, rows.columns)
-    warnings = (*content.warnings(), *rows.warnings, *unused, *table.warnings)
+    told = dialect_words(rows.header) if column_map is None else []
+    warnings = (*content.warnings(), *told, *rows.warnings, *unused, *table.warnings)
     return table_recording(replace(table, warnings=warnings))
 
 
@@ -121,8 +126,15 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
     if column_map is None:
         rows.flags, rows.others = flag_columns(header), other_columns(header, rows.columns)
         beside |= rows.flags.keys() | {column.index for column in rows.others}
+    instance = instance_place(header) if column_map is None else None
+    first = ""
     for number, row in _after_header(where, text, separator, header_line):
         row = _fitted(row, width, separator, rows.columns)
+        if instance is not None and len(row) == width:
+            first = first or row[instance].strip()
+            if row[instance].strip() != first:
+                rows.others_of_kind += 1
+                continue
         if len(row) != width and column_map is not None and column_map.skip_bad_rows:
             rows.skipped.append(number)
             continue
@@ -141,6 +153,8 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             rows.cells[UTC][-1] = " ".join(row[index].strip() for index in clock)
         for index in beside:
             rows.sides.setdefault(index, []).append(row[index])
+    if rows.others_of_kind:
+        rows.warnings.append(instance_words(rows.others_of_kind, first))
     _tell_numerals(where, rows, column_map)
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
         rows.warnings.append(Text("the last row is cut off: left out"))
@@ -273,6 +287,7 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
             for why, count in (
                 (Text("without a time"), untimed),
                 (Text("cannot be read"), len(rows.skipped)),
+                (Text("of another sensor of this kind"), rows.others_of_kind),
             )
             if count
         ),

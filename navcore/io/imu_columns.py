@@ -6,9 +6,10 @@ instruments between them (``imu``, ``RS_S``, ``body``) are not heeded.
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from navcore.io.column_names import plain_name
+from navcore.io.dialects import meant
 from navcore.io.written_units import UNITS, unit_of, without_brackets, written
 
 RATE, FORCE, ANGLE, VELOCITY = "rate", "force", "angle", "velocity"
@@ -77,9 +78,10 @@ class ImuColumn:
 def imu_columns(names: Sequence[str]) -> dict[tuple[str, str], ImuColumn]:
     """Columns of an IMU by kind and axis; of several for one, the first."""
     found: dict[tuple[str, str], ImuColumn] = {}
-    for index, name in enumerate(names):
+    for index, name in enumerate(meant(names)):
         column = imu_column(index, name)
         if column is not None:
+            column = replace(column, name=names[index].strip())
             found.setdefault((column.kind, column.axis), column)
     return found
 

@@ -15,6 +15,7 @@ from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns, plain_name
 from navcore.io.columns import MOST_COLUMNS, listed
 from navcore.io.containers.base import MOST_UNPACKED_BYTES, Container
+from navcore.io.dialects import dialect_words, instance_place, instance_words
 from navcore.io.epochs import numeric_times
 from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
 from navcore.io.imu_rows import COMMENTS, FIELD, HEAD_BYTES, Header, Wanted, read_rows, unix_text
@@ -85,8 +86,14 @@ def read_imu_table(content: bytes, source: str, column_map: ColumnMap | None = N
     head = unix_text(content[:HEAD_BYTES])
     header = _header(head) if column_map is None else _mapped_header(head, column_map)
     wanted = _wanted(source, header.names, column_map)
+    told = dialect_words(header.names) if column_map is None else []
+    place = instance_place(header.names) if column_map is None else None
+    if place is not None:
+        content, others = _of_one_instance(content, header, place)
+        told += others
     cells, raw, skipped = read_rows(content, header, wanted, source)
-    return _of_numbers(source, wanted, cells, raw, skipped)
+    found = _of_numbers(source, wanted, cells, raw, skipped)
+    return found._replace(warnings=(*told, *found.warnings))
 
 
 def read_imu_container(held: Container, source: str, column_map: ColumnMap | None = None) -> ImuTable:
@@ -105,7 +112,9 @@ def read_imu_container(held: Container, source: str, column_map: ColumnMap | Non
     if len(cells) == 1 and cells[0].size == 1 and cells[0].dtype.kind in "iuf":
         cells = [float(cells[0][0]) * np.arange(1, size + 1)]
     raw = np.column_stack([read[place][0].astype(float, copy=False) for place in places])
-    return _of_numbers(source, wanted, cells, raw, [])._replace(kind=held.kind)
+    found = _of_numbers(source, wanted, cells, raw, [])
+    told = dialect_words(held.names) if column_map is None else []
+    return found._replace(kind=held.kind, warnings=(*told, *found.warnings))
 
 
 def _wanted(source: str, names: Sequence[str], column_map: ColumnMap | None) -> Wanted:
@@ -137,6 +146,21 @@ def _of_numbers(
         time_s = time_s - time_s[0]
     raw *= factors
     return ImuTable(time_s, raw, wanted.increments, (*told, *guessed))
+
+
+def _of_one_instance(content: bytes, header: Header, place: int) -> tuple[bytes, list[str]]:
+    """Rows of the first of several sensors whose messages stand between each other, and what to say."""
+    lines = content.splitlines(keepends=True)
+    head, body = lines[: header.line + 1], lines[header.line + 1 :]
+    mark = header.separator.encode()
+    cells = [
+        line.split(mark, place + 1)[place].strip() if line.count(mark) >= place else b"" for line in body
+    ]
+    first = next((cell for cell in cells if cell), b"")
+    kept = [line for line, cell in zip(body, cells, strict=True) if cell in (first, b"")]
+    others = len(body) - len(kept)
+    told = [instance_words(others, first.decode("ascii", "replace"))] if others else []
+    return b"".join([*head, *kept]) if others else content, told
 
 
 def refuse_lost(source: str, *arrays: np.ndarray) -> None:

@@ -143,6 +143,8 @@ class KnownText(NamedTuple):
 
 
 _XML = r"(?:<\?xml[^>]{0,200}\?>\s*)?(?:<!--.{0,400}?-->\s*)?"
+DATAFLASH = re.compile(r"FMT, ?\d{1,3}, ?\d{1,3}, ?FMT,")
+"""First line of an ArduPilot log as text, whose lines are of many kinds, though some look like a table's."""
 TEXTS = (
     KnownText(
         Text("a web page"),
@@ -173,6 +175,11 @@ TEXTS = (
         Text("a RINEX file of raw observations"),
         Text("compute positions from it, and give these as CSV, .pos or NMEA 0183"),
         re.compile(".{0,200}RINEX VERSION / TYPE", re.DOTALL),
+    ),
+    KnownText(
+        Text("an ArduPilot log (DataFlash, as text)"),
+        Text("convert it: mavlogdump.py --format csv --types GPS log.log"),
+        DATAFLASH,
     ),
     KnownText(
         Text("a log of NovAtel messages"),

@@ -1,4 +1,4 @@
-"""Values that stand for no reading: "not available" of AIS, and 0 N 0 E of a receiver without a fix."""
+"""Values that stand for no reading: "not available" of AIS and MAVLink, 0 N 0 E without a fix."""
 
 from dataclasses import replace
 
@@ -8,13 +8,14 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.io.series import Recording, utc_text
 
-AIS_NOT_AVAILABLE = {
-    "heading": ("deg", 511.0),
-    "sog": ("kn", 102.3),
-    "lat": ("deg", 91.0),
-    "lon": ("deg", 181.0),
+_NOT_AVAILABLE = {
+    "heading": {"deg": 511.0, "cdeg": 65535.0},
+    "sog": {"kn": 102.3, "cms": 65535.0},
+    "cog": {"cdeg": 65535.0},
+    "lat": {"deg": 91.0},
+    "lon": {"deg": 181.0},
 }
-"""ITU-R M.1371, by quantity: unit and number."""
+"""Numbers of AIS (ITU-R M.1371) and MAVLink, by quantity and unit."""
 AIS_NO_COURSE = 360.0
 """Also north in other tables: no course only in a table that holds another of AIS's numbers."""
 _ZERO = 1e-7 * DEG
@@ -23,11 +24,11 @@ _MOST_ZEROS = 0.5
 
 
 def not_available(stem: str, unit: str, values: np.ndarray) -> np.ndarray:
-    """Which values are AIS's "not available"; arrays of shape (n,)."""
-    known = AIS_NOT_AVAILABLE.get(stem)
-    if known is None or known[0] != unit:
+    """Which values are AIS's or MAVLink's "not available"; arrays of shape (n,)."""
+    known = _NOT_AVAILABLE.get(stem, {}).get(unit)
+    if known is None:
         return np.zeros(values.size, dtype=bool)
-    return np.isclose(values, known[1], rtol=0.0, atol=1e-6)
+    return np.isclose(values, known, rtol=0.0, atol=1e-6)
 
 
 def without_zero_places(recording: Recording) -> Recording:

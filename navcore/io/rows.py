@@ -43,5 +43,7 @@ class Rows:
     """Columns of quantities for which another column is taken."""
     parts: tuple[str, ...] = ()
     """Parts of the time that stand in columns of their own, in the order in which the cells are joined."""
+    others_of_kind: int = 0
+    """Rows of other sensors of one kind, which are left out."""
     layout: tuple[str, str] = "", ""
     """Separator and line of the header."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from navcore.foundation.text import Text
 from navcore.io.column_names import plain_name
+from navcore.io.dialects import meant
 from navcore.io.nmea_flags import DEAD_RECKONED, HEADING_MODES, INVALID, MODES, QUALITIES, STATUS
 
 _FIX = ("lat", "lon", "height", "sog", "cog", "ve", "vn")
@@ -68,7 +69,7 @@ TABLE_FLAGS = tuple(TableFlag(tuple(names.split()), stems, meanings) for names, 
 def flag_columns(names: Sequence[str]) -> dict[int, TableFlag]:
     """Columns of a header that are flags, by their places."""
     found: dict[int, TableFlag] = {}
-    for index, name in enumerate(names):
+    for index, name in enumerate(meant(names)):
         plain = plain_name(name)
         for flag in TABLE_FLAGS:
             if plain in flag.names or (flag.names == ("status_status",) and plain.endswith("status_status")):

@@ -15,6 +15,7 @@ from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC,
 from navcore.io.columns import column_warnings, pair_faults, require_columns, table_recording
 from navcore.io.containers.base import LONGEST_TIME, Raw
 from navcore.io.containers.opening import is_container, open_container
+from navcore.io.dialects import dialect_words
 from navcore.io.epochs import numeric_times
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import is_named
@@ -55,7 +56,8 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
         time_s, dated = _timing(path.name, clock, raw[clock.index][0], rows, notes)
     values = {stem: raw[place][0].astype(float) * signs.get(stem, 1.0) for stem, place in places.items()}
     missing = {stem: raw[place][1] for stem, place in places.items() if raw[place][1].any()}
-    warnings = (*column_warnings(held.names, columns), *notes)
+    told = dialect_words(held.names) if column_map is None else []
+    warnings = (*told, *column_warnings(held.names, columns), *notes)
     stated = column_map is not None
     return table_recording(
         Table(

@@ -10,7 +10,9 @@ from typing import NamedTuple
 from navcore.foundation.units import ARCSEC, DEG, KNOT, MICRO_G, STANDARD_GRAVITY
 
 UNITS = {
-    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "arcsec": ARCSEC, "e7": 1e-7 * DEG},
+    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "arcsec": ARCSEC, "e7": 1e-7 * DEG,
+        "cdeg": 0.01 * DEG,
+    },
     "speed": {
         "mps": 1.0, "kn": KNOT, "kmh": 1.0 / 3.6, "cms": 0.01, "mms": 1e-3, "mph": 0.44704, "fps": 0.3048,
     },
@@ -32,6 +34,7 @@ _SPELT = {
         "mrad": "milliradian milliradians",
         "urad": "microradian microradians",
         "arcsec": "arcsecond arcseconds",
+        "cdeg": "centidegree centidegrees centideg",
         "e7": "1e7 deg_e7 dege7 1e_7deg 1e_7_deg deg_1e7",
     },
     "speed": {

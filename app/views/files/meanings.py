@@ -49,7 +49,7 @@ MEANINGS: dict[str, str] = {
 _UNIT_SIGNS = {
     "mps": "m/s", "kmh": "km/h", "cms": "cm/s", "mms": "mm/s", "fps": "ft/s", "nm": "nmi", "us": "µs",
     "mps2": "m/s²", "fps2": "ft/s²", "ug": "µg", "rad_s": "rad/s", "mrad_s": "mrad/s", "deg_s": "°/s",
-    "mdeg_s": "m°/s", "deg_h": "°/h", "urad": "µrad", "e7": "1e-7 °", "deg": "°",
+    "mdeg_s": "m°/s", "deg_h": "°/h", "urad": "µrad", "e7": "1e-7 °", "cdeg": "0.01 °", "deg": "°",
 }  # fmt: skip
 """Units of a map as a reader writes them."""
 _DIMENSIONS = {"rad_s": "rate", "mps2": "force", "rad": "angle", "mps": "speed"}
