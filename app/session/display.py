@@ -24,6 +24,16 @@ SWEPT = tuple(key for key in LIMITED if QUANTITIES[key].kind is not None and "ru
 AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
 """Quantities on the axes of the Pareto fronts."""
 
+CURVES: dict[str, tuple[str, ...]] = {
+    "overview": ("phi_e", "dve", "phi_n", "position"),
+    "all": ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position"),
+    "attitude": ("phi_e", "phi_n", "phi_u"),
+    "velocity": ("dve", "dvn"),
+    "position": ("position", "dlat", "dlon"),
+    "verification": (),
+}
+"""Groups of error curves; the keys of `navcore.quantities.ERRORS` in each."""
+
 _MOST_NAMES = 60
 
 
@@ -34,6 +44,13 @@ def _one_of(names: Collection[str]) -> AfterValidator:
         return id
 
     return AfterValidator(check)
+
+
+def _is_of_curves(text: str) -> str:
+    keys = {error.key for error in ERRORS}
+    if text not in CURVES and not keys.issuperset(text.split(",")):
+        raise ValueError(f"must be one of {', '.join(CURVES)}, or of {', '.join(sorted(keys))} with commas")
+    return text
 
 
 class Display(BaseModel):
@@ -59,6 +76,9 @@ class Display(BaseModel):
         Axis of the errors over time.
     envelope : str
         Bands behind the error curves: one standard deviation by covariance, over 20 seeds, or none.
+    curves : str
+        What the tab "Errors" shows: a group of `CURVES`, or keys of `navcore.quantities.ERRORS` with commas
+        between them, as a lesson chooses.
     spectrum : str
         Error whose spectrum is shown: a key of `navcore.quantities.ERRORS`.
     baseline : int or None
@@ -137,6 +157,7 @@ class Display(BaseModel):
     time: Literal["auto", "min", "h"] = "auto"
     scale: Literal["linear", "log"] = "linear"
     envelope: BandKind = "none"
+    curves: Annotated[str, AfterValidator(_is_of_curves)] = "overview"
     spectrum: Annotated[str, _one_of([error.key for error in ERRORS])] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
     legend: Annotated[
@@ -179,6 +200,11 @@ class Display(BaseModel):
         tuple[tuple[Annotated[str, Field(max_length=60)], Annotated[int, Field(ge=0, le=99)]], ...],
         Field(max_length=_MOST_NAMES),
     ] = ()
+
+    @property
+    def chosen_curves(self) -> tuple[str, ...]:
+        """Keys of the error curves that are shown; none where a verification is."""
+        return CURVES[self.curves] if self.curves in CURVES else tuple(self.curves.split(","))
 
     @property
     def enlarged(self) -> bool:

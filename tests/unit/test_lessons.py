@@ -27,6 +27,8 @@ from schuler_bench.editing import form
 from schuler_bench.editing.form import FieldSpec
 from schuler_bench.session.display import Display
 from schuler_bench.views import load
+from schuler_bench.views.errors.figure import error_plots
+from schuler_bench.views.errors.view import moving
 from schuler_bench.views.explain.view import (
     Explanation,
     explain_html,
@@ -178,12 +180,45 @@ def test_what_a_step_asks_of_the_page_exists(lesson: Lesson, index: int) -> None
     action = lesson.steps[index].action
     scenario = lesson.scenario_of(index)
     assert set(action.tabs) <= {kind.title for kind in load() if kind.place in ("upper", "lower")}
-    Display().with_(**action.display)
+    Display().with_(**action.shown)
     assert action.method is None or action.method < len(scenario.method)
     for path in action.sliders:
         (spec,) = spec_at(scenario, path)
         assert spec.slider is not None
         assert spec.label.startswith("try:")
+
+
+SYMBOLS = {
+    r"\varphi_E": "phi_e",
+    r"\varphi_N": "phi_n",
+    r"\varphi_U": "phi_u",
+    r"\delta V_E": "dve",
+    r"\delta V_N": "dvn",
+    "latitude": "dlat",
+    "position": "position",
+    "heading": "phi_u",
+}
+"""How the text of a lesson names a curve."""
+LOOKS = re.compile(r"(?:^|[.:] )((?:Look|Compare|Watch|Read)\b[^.]*)", re.MULTILINE)
+OF_ERRORS = re.compile(r"(?:error|curve)\.\d+\.(\w+)\.")
+
+
+@every_step
+def test_a_step_shows_the_curves_that_it_speaks_of(lesson: Lesson, index: int) -> None:
+    step = lesson.steps[index]
+    action, question = step.action, step.question
+    if action is None or "Errors" not in action.tabs:
+        return
+    shown = set(Display().with_(**action.shown).chosen_curves)
+    looked_at = " ".join(LOOKS.findall(" ".join(step.text.split())))
+    spoken_of = {key for name, key in SYMBOLS.items() if name in looked_at}
+    if question is not None:
+        asked = question.answer + "." + " ".join(choice.when for choice in question.choices)
+        spoken_of |= set(OF_ERRORS.findall(asked))
+    assert spoken_of <= shown
+    run = run_of(lesson.id, index)
+    kept = moving({key: plot for key, plot in error_plots(run).items() if key in shown})
+    assert spoken_of <= set(kept), "a curve that is zero throughout is not drawn"
 
 
 @every_step

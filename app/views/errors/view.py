@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
@@ -105,11 +106,18 @@ OWN_NOISE = Text(
     "which is another draw than the run's. Right: strapdown minus linear model."
 )
 ALL = Text("All errors, small")
-_SMALL: dict[str, tuple[str, ...]] = {
-    OVERVIEW: ("phi_e", "dve", "phi_n", "position"),
-    ALL: ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position"),
+_GROUPS: dict[str, str] = {
+    OVERVIEW: "overview",
+    ALL: "all",
+    Text("Attitude"): "attitude",
+    Text("Velocity"): "velocity",
+    Text("Position"): "position",
+    VERIFICATION: "verification",
 }
-"""Plots two abreast: left, right."""
+"""Titles of the groups of `schuler_bench.session.display.CURVES`."""
+_OF_THE_STEP = Text("Those of the lesson")
+_TWO_ABREAST = ("overview", "all")
+"""Groups in small plots: left, right."""
 _TWO = '<div class="sb-two"></div>'
 _KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in TITLES.items()}
 _VERIFIED_KEYS: dict[str, str] = {
@@ -165,10 +173,9 @@ class ErrorsView(PictureView[ErrorCurves]):
         gui = self.frame.gui
         self._stack = Stack(gui, tab)
         with tab:
-            groups = (OVERVIEW, ALL, *(name for name in GROUPS if name != OVERVIEW), VERIFICATION)
-            self._group = gui.add_dropdown(
+            self._group: Any = gui.add_dropdown(
                 Text("curves"),
-                groups,
+                tuple(_GROUPS),
                 hint=Text(
                     "Overview: tilts, east velocity and position. All errors: north and heading too. "
                     "Attitude, Velocity, Position: larger plots "
@@ -179,17 +186,31 @@ class ErrorsView(PictureView[ErrorCurves]):
             )
             gui.add_html(TOOLS, order=0)
             self._legend = gui.add_html("", order=1)
-        self._group.on_update(if_user(self.frame.redraw))
+        self._group.on_update(if_user(self._choose))
+        self.follow_display()
+
+    def _choose(self) -> None:
+        if self._group.value in _GROUPS:
+            self.frame.show(curves=_GROUPS[self._group.value])
+
+    def follow_display(self) -> None:
+        """Show which curves the display has."""
+        curves = self.session.display.curves
+        title = next((title for title, group in _GROUPS.items() if group == curves), _OF_THE_STEP)
+        options = (*_GROUPS, *([_OF_THE_STEP] if title is _OF_THE_STEP else []))
+        if tuple(self._group.options) != options:
+            self._group.options = options
+        self._group.value = title
 
     def picture(self, found: Shown) -> ErrorCurves:
         """Make the plots of the chosen quantities."""
-        group = self._group.value
+        display = found.display
         methods = self.frame.layout().alone
-        if group == VERIFICATION:
-            return _verified_curves(found.verified, found.display, methods=methods)
-        small = _SMALL.get(group)
-        curves = error_curves(found, small or GROUPS[group], small is not None, methods=methods)
-        return replace(curves, plots=moving(curves.plots)) if found.display.lesson else curves
+        if display.curves == "verification":
+            return _verified_curves(found.verified, display, methods=methods)
+        small = display.curves in _TWO_ABREAST
+        curves = error_curves(found, display.chosen_curves, small, methods=methods)
+        return replace(curves, plots=moving(curves.plots)) if display.lesson else curves
 
     def show(self, picture: ErrorCurves) -> None:
         """Show the plots that are chosen, below their legend."""

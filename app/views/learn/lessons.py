@@ -7,7 +7,8 @@ with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present
 
 ``toml action``
     The button "Show me". ``set``: fields of the scenario as on the command line, each step beginning from the
-    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of
+    lesson's scenario; ``tabs`` to bring to the front; ``curves``: which errors the tab Errors then shows, as
+    the display's field of this name; ``display``: further fields of
     `schuler_bench.session.display.Display`; ``method``: number of the method to edit; ``sliders``: fields
     that get a slider in the lesson.
 
@@ -73,9 +74,15 @@ class Action(_Part):
 
     set: tuple[str, ...] = ()
     tabs: tuple[str, ...] = ()
+    curves: str = "overview"
     display: dict[str, bool | str | float] = Field(default_factory=dict)
     method: int | None = Field(default=None, ge=0)
     sliders: tuple[str, ...] = ()
+
+    @property
+    def shown(self) -> dict[str, bool | str | float]:
+        """Fields of the display that it sets."""
+        return {"curves": self.curves, **self.display}
 
 
 class Choice(_Part):

@@ -111,9 +111,9 @@ def _action_faults(where: str, action: Action, scenario: Scenario) -> Iterator[F
         if tab not in tabs:
             yield Fault(where, "tabs", tab, Text("must be one of {tabs}", tabs=", ".join(tabs)))
     try:
-        Display().with_(**action.display)
+        Display().with_(**action.shown)
     except ValidationError as error:
-        faults = faults_from(error, Display, action.display, "")
+        faults = faults_from(error, Display, action.shown, "")
         yield from (Fault(where, f"display.{one.field}", one.value, one.allowed) for one in faults)
     if action.method is not None and action.method >= len(scenario.method):
         allowed = Text("must be >= 0 and < {count}, the number of methods", count=len(scenario.method))

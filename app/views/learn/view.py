@@ -114,7 +114,7 @@ class LearnView(View):
         scenario, session = self._scenario(), self.session
         self._live = None
         session.change(scenario, None, origin=self._origin(lesson), selected=action.method)
-        session.show(None, **action.display, lesson_shown=session.display.lesson_shown + 1)
+        session.show(None, **action.shown, lesson_shown=session.display.lesson_shown + 1)
 
     def _answer(self, given: str) -> None:
         if self._lesson is not None and given and len(given) < 40:
