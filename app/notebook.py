@@ -11,6 +11,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
+from navcore.questions.report import Told
 from navcore.questions.run import Ran
 from navcore.scenario.model import Scenario
 from schuler_bench.plots.plotly_data import Packed, PlotlyFigure
@@ -72,6 +73,13 @@ def network_figure(network: NetworkParameters, name: str, lat_deg: float, **opti
 def budget_bars(budget: Budget) -> Figure:
     """Make the bars of an error budget; see `Budget.figure`."""
     return _figure_of({"budget": budget_figure}, "budget", budget, {})
+
+
+def report_page(told: Told) -> str:
+    """Make the page of a report (`navcore.questions.report`)."""
+    from schuler_bench.views.requirements.report import page
+
+    return page(told)
 
 
 def run_tables(run: Run) -> str:

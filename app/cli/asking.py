@@ -54,16 +54,20 @@ class AskingCommand:
         )
 
     def _free(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> None:
-        """Refuse a place for what it writes before the work."""
+        """Refuse places for what it writes before the work."""
+        force = given.get("force", False)
         if (place := given.get(self.asked.place)) is not None:
-            question.require_free(place, reads, force=given.get("force", False))
+            question.require_free(place, reads, force=force)
+        question.require_beside(reads, force=force)
 
     def _written(
         self, question: Question, answer: Answer, given: Mapping[str, Any], reads: list[Any]
     ) -> None:
-        """Write what ``--out``, or the option in its place, asks for."""
+        """Write what ``--out``, or the option in its place, and other options ask for."""
+        force = given.get("force", False)
         if (place := given.get(self.asked.place)) is not None:
-            question.write(answer, place, reads, force=given.get("force", False))
+            question.write(answer, place, reads, force=force)
+        question.write_beside(answer, reads, force=force)
 
     def _answered(self, question: Question, given: Mapping[str, Any], reads: list[Any]) -> Answer:
         """Answer, and show the progress."""

@@ -22,9 +22,12 @@ def draws_more_than_a_run(scenario: Scenario) -> bool:
     return bool(limits and scenario.method and (given_deviations(scenario) or any(map(needs_seeds, limits))))
 
 
-def seeds_for(scenario: Scenario) -> int:
-    """Seeds of `run_shares`: as many as of a design where a limit asks for them, fewer if runs are long."""
-    if not any(map(needs_seeds, scenario.requirement)):
+def seeds_for(scenario: Scenario, *, wanted: bool = False) -> int:
+    """Seeds of `run_shares`: as many as of a design where they are wanted or a limit asks for them.
+
+    Fewer where runs are long.
+    """
+    if not wanted and not any(map(needs_seeds, scenario.requirement)):
         return SEEDS
     return max(SEEDS, min(MOST_SEEDS, int(_LONGEST_S / max(estimated_seconds(scenario), 1e-3))))
 

@@ -26,7 +26,7 @@ from navcore.foundation.text import Text
 
 HIDDEN = ".schuler-"
 """Begins the names of files and folders that are not complete."""
-_OPTION = "--out"
+OUT = "--out"
 _SIGNED = re.compile(rb"Written by schuler (\S+); digest ([0-9a-f]{16})")
 _MOST_SIGNED_BYTES = 1 << 28
 _FIRST_LINES = 3
@@ -35,13 +35,13 @@ _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 PathLike = str | os.PathLike[str]
 
 
-def refused(path: PathLike, reason: str, option: str = _OPTION) -> InputError:
+def refused(path: PathLike, reason: str, option: str = OUT) -> InputError:
     """Return the fault of a file or folder that is not written to."""
     return InputError(Fault(option, "", str(path), reason))
 
 
 @contextmanager
-def writing(path: PathLike, option: str = _OPTION) -> Iterator[None]:
+def writing(path: PathLike, option: str = OUT) -> Iterator[None]:
     """Tell what keeps a file or folder from being written, as a fault of the option that names it."""
     try:
         yield
@@ -78,10 +78,10 @@ def require_folder(folder: PathLike, names: Iterable[str], reads: Iterable[PathL
                 raise refused(folder, Text("is a link that leads nowhere"))
             if not folder.is_dir():
                 raise refused(folder, Text("exists and is not a folder"))
-            known = _identities(reads)
+            known = identities(reads)
             for name in names:
-                _require_replaceable(folder / name, known)
-        _require_writable(folder)
+                require_replaceable(folder / name, known)
+        require_writable(folder)
 
 
 @contextmanager
@@ -176,7 +176,7 @@ def require_file(
     reads: Iterable[PathLike] = (),
     *,
     force: bool = False,
-    option: str = _OPTION,
+    option: str = OUT,
 ) -> None:
     """Refuse a file that cannot be written or must not be replaced.
 
@@ -203,7 +203,7 @@ def require_file(
     target = Path(target)
     with writing(target, option):
         if os.path.lexists(target):
-            _require_replaceable(target, _identities(reads), option, force=force)
+            require_replaceable(target, identities(reads), option, force=force)
             if not force and not written_by(command, target):
                 allowed = Text(
                     "is there already, and is not what schuler {command} wrote (or was edited since): give "
@@ -213,7 +213,7 @@ def require_file(
                 raise refused(target, allowed, option)
         elif not target.parent.exists():
             raise refused(target, Text("cannot be written: there is no such folder"), option)
-        _require_writable(target.parent, option, target)
+        require_writable(target.parent, option, target)
 
 
 def write_file(
@@ -223,7 +223,7 @@ def write_file(
     reads: Iterable[PathLike] = (),
     *,
     force: bool = False,
-    option: str = _OPTION,
+    option: str = OUT,
     comment: str = "# {}",
 ) -> None:
     """Write a text file, with a comment by which the command knows it again.
@@ -248,7 +248,7 @@ def write_file(
         stream.write(signed(text, command, comment).encode())
 
 
-def utf8(text: str, option: str = _OPTION) -> bytes:
+def utf8(text: str, option: str = OUT) -> bytes:
     """Return a text as it is written.
 
     Raises
@@ -319,7 +319,7 @@ def whole(path: Path, within: Path | None = None) -> Iterator[IO[bytes]]:
 # ---------------------------------------------------------------- both
 
 
-def _identities(paths: Iterable[PathLike]) -> frozenset[tuple[int, int]]:
+def identities(paths: Iterable[PathLike]) -> frozenset[tuple[int, int]]:
     """Device and number of files, by which the system knows them whatever their paths, links and letters."""
     found: set[tuple[int, int]] = set()
     for path in paths:
@@ -329,8 +329,8 @@ def _identities(paths: Iterable[PathLike]) -> frozenset[tuple[int, int]]:
     return frozenset(found)
 
 
-def _require_replaceable(
-    path: Path, known: frozenset[tuple[int, int]], option: str = _OPTION, *, force: bool = False
+def require_replaceable(
+    path: Path, known: frozenset[tuple[int, int]], option: str = OUT, *, force: bool = False
 ) -> None:
     """Refuse to replace what is no file, write-protected, or read by the command."""
     try:
@@ -349,7 +349,7 @@ def _require_replaceable(
         raise refused(path, Text("is write-protected"), option)
 
 
-def _require_writable(folder: Path, option: str = _OPTION, named: Path | None = None) -> None:
+def require_writable(folder: Path, option: str = OUT, named: Path | None = None) -> None:
     """Refuse a folder in which nothing can be made; of a missing one, that in which it will be made."""
     there = Path(os.path.abspath(folder))
     while not os.path.lexists(there):

@@ -27,6 +27,7 @@ from navcore.quantities.table import (
     limit_unit_name,
     searched,
     value_unit,
+    value_unit_name,
 )
 
 __all__ = [
@@ -55,4 +56,5 @@ __all__ = [
     "limit_unit_name",
     "searched",
     "value_unit",
+    "value_unit_name",
 ]

@@ -329,6 +329,18 @@ def limit_unit_name(key: str) -> str:
     return suffix if size != row.size or row.shown == suffix else row.shown
 
 
+def value_unit_name(key: str) -> str:
+    """Name of the unit of a row of `LIMITED` in files; empty for a plain number.
+
+    Examples
+    --------
+    >>> value_unit_name("position_rate_cep_nmph"), value_unit_name("reset_interval_h")
+    ('nmi/h', 'h')
+    """
+    suffix, row = key.rpartition("_")[2], QUANTITIES[key]
+    return suffix if suffix in UNITS and row.unit != "1/s" else row.shown
+
+
 def searched(key: str) -> Quantity | None:
     """Return the row that a search measures for a limit: that of the ensemble in the place of one run's."""
     own, rows = QUANTITIES[key], [QUANTITIES[name] for name in TUNED]

@@ -19,6 +19,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.design:DesignQuestion",
     "navcore.questions.worst:WorstQuestion",
     "navcore.questions.fit:FitQuestion",
+    "navcore.questions.report:ReportQuestion",
     "navcore.questions.study:StudyQuestion",
     "navcore.questions.sweep:SweepQuestion",
     "navcore.questions.verify:VerifyQuestion",

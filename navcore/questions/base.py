@@ -275,6 +275,12 @@ class Question(Parameters):
             (text,) = texts.values()
             write_file(out, text, self._command, kept, force=force, option=flag_of(self.place))
 
+    def require_beside(self, reads: Iterable[PathLike] = (), *, force: bool = False) -> None:
+        """Refuse places for files that its own fields name, as `require_free` does for ``--out``."""
+
+    def write_beside(self, answer: Answer, reads: Iterable[PathLike] = (), *, force: bool = False) -> None:
+        """Write the files that its own fields name; see `require_beside`."""
+
     def texts(self, answer: Answer) -> dict[str, str]:
         """Return what ``--out`` asks for: a text by the name of each of ``files``."""
         raise NotImplementedError

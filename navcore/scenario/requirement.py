@@ -13,7 +13,7 @@ from navcore.foundation.parameters import quantity as number
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.foundation.with_unit import read_with_unit
-from navcore.quantities import LIMITED, QUANTITIES, limit_unit, limit_unit_name, value_unit
+from navcore.quantities import LIMITED, QUANTITIES, limit_unit, limit_unit_name, value_unit, value_unit_name
 
 MOST = 20
 if TYPE_CHECKING:
@@ -94,6 +94,12 @@ class Requirement(Parameters):
         description=Text("Number of the clause of the specification; each only once in a scenario."),
         json_schema_extra={"label": Text("clause")},
     )
+    text: str | None = Field(
+        default=None,
+        max_length=1000,
+        description=Text("Words of the clause, for the verification matrix."),
+        json_schema_extra={"label": Text("text")},
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -132,6 +138,11 @@ class Requirement(Parameters):
     def limit_si(self) -> float:
         """The limit, SI."""
         return self.limit * limit_unit(self.quantity)
+
+    @property
+    def unit(self) -> str:
+        """Unit of a value of its quantity in files; empty for a plain number."""
+        return value_unit_name(self.quantity)
 
     @property
     def begins_s(self) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -217,7 +218,8 @@ def test_what_is_typed_into_the_table_is_a_limit_or_refused() -> None:
     begun = static_run().scenario
     commands: dict[str, Callable[[str], None]] = {}
     session: Any = SimpleNamespace(lock=threading.RLock(), scenario=begun, run=None, redrawn=0)
-    session.searches = SimpleNamespace(judge=SimpleNamespace(known={}, words=()))
+    asker = SimpleNamespace(result=None, words=(), asked=None, fraction=None, halt=None)
+    session.searches = SimpleNamespace(judge=SimpleNamespace(known={}, words=()), asking={"report": asker})
 
     def change(scenario: Scenario, by: object, name: str = "") -> None:
         session.scenario = scenario
@@ -227,7 +229,8 @@ def test_what_is_typed_into_the_table_is_a_limit_or_refused() -> None:
 
     session.change = change
     notes: list[Any] = []
-    gui = SimpleNamespace(add_html=lambda text: notes.append(SimpleNamespace(content=text)) or notes[-1])
+    gui = MagicMock()
+    gui.add_html = lambda text: notes.append(SimpleNamespace(content=text)) or notes[-1]
     register = SimpleNamespace(register=lambda name, act: commands.update({name: act}))
     frame: Any = SimpleNamespace(gui=gui, session=session, commands=register, redraw=redraw)
     RequirementsView(frame).build(nullcontext())

@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from html import escape
-from pathlib import Path
-from string import Template
 from typing import Any
 
 from navcore.engine.run import Run
@@ -17,9 +15,9 @@ from navcore.scenario.file import load, presets, to_toml
 from schuler_bench.bridge.texts import figure_said, language_of, text_said
 from schuler_bench.editing.edits import files_of
 from schuler_bench.plots import table
+from schuler_bench.plots.paper import paper, section
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.plots.saved import WIDTH_PX, plotly_csv, time_csv, time_figure
-from schuler_bench.plots.style import FONT_FAMILY
 from schuler_bench.session.pins import Pin
 from schuler_bench.session.shown import Shown, edited, shown, titled, window_of
 from schuler_bench.session.uploads import with_plain_names
@@ -172,10 +170,6 @@ _WINDOW = (1600, 940)
 """Window for which plots are laid out: on A4 their type is legible, and three stand on a page."""
 _ABREAST = 3
 """Methods beside each other in a table, so that it fits on paper."""
-_STATIC = Path(__file__).parent / "static"
-_PAGE = Template((_STATIC / "document.html").read_text(encoding="utf-8"))
-_FONT = f":root{{--sb-font:{FONT_FAMILY}}}"
-_CSS = _FONT + table.CSS + (_STATIC / "document.css").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True)
@@ -233,7 +227,7 @@ def document(
         )
         for place, title in enumerate(pictures)
     )
-    plots = _section(Text("Plots"), *figures)
+    plots = section(Text("Plots"), *figures)
     body = say(
         Text(
             "<header><h1>Schuler Bench: {title:html}</h1>{about}</header>"
@@ -244,13 +238,13 @@ def document(
             metrics=_metrics(session),
             requirements=_requirements(session),
             pins=_pins(session),
-            tables=Text.joined("", (_section(title, html) for title, html in session.tables)),
+            tables=Text.joined("", (section(title, html) for title, html in session.tables)),
             plots=plots,
             scenario=_scenario(session),
         )
     )
     title = quoted(session.title)
-    return _PAGE.substitute(language=escape(language), title=title, style=_CSS, body=body)
+    return paper(language, title, body)
 
 
 def command(session: Session) -> str:
@@ -277,10 +271,6 @@ def _about(session: Session) -> str:
     return Text("{source}<dl>{rows}</dl>", source=source, rows=rows)
 
 
-def _section(title: str, *content: str) -> str:
-    return Text("<section><h2>{title}</h2>{content}</section>", title=title, content=Text.joined("", content))
-
-
 def _tables(count: int, make: Callable[[range], str]) -> str:
     """Tables that are about equally wide; ``make`` gives one of some of the methods."""
     return Text.joined(
@@ -291,7 +281,7 @@ def _tables(count: int, make: Callable[[range], str]) -> str:
 
 def _warnings(session: Session) -> str:
     warnings = warnings_html(session.now.run, session.now.verified)
-    return _section(Text("Warnings about the run"), warnings) if "sb-note" in warnings else ""
+    return section(Text("Warnings about the run"), warnings) if "sb-note" in warnings else ""
 
 
 def _metrics(session: Session) -> str:
@@ -300,28 +290,28 @@ def _metrics(session: Session) -> str:
     note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
     tables = _tables(len(run.methods), lambda part: metrics_html(window.run, part, display=display))
     system = system_html(run, folded=False)
-    return _section(Text("Metrics"), note, tables, Text('<div class="table">{system}</div>', system=system))
+    return section(Text("Metrics"), note, tables, Text('<div class="table">{system}</div>', system=system))
 
 
 def _requirements(session: Session) -> str:
     run = session.now.run
     if not run.scenario.requirement:
-        return _section(Text("Requirements"), Text("<p>No requirement is set.</p>"))
+        return section(Text("Requirements"), Text("<p>No requirement is set.</p>"))
     tables = _tables(len(run.methods), lambda part: requirements_html(run, methods=part))
-    return _section(Text("Requirements"), tables)
+    return section(Text("Requirements"), tables)
 
 
 def _pins(session: Session) -> str:
     run, display, baseline = session.now.run, session.now.display, session.now.baseline
     pins = titled(session.pins, run.scenario)
     if not pins:
-        return _section(Text("Pins"), Text("<p>No run is pinned.</p>"))
+        return section(Text("Pins"), Text("<p>No run is pinned.</p>"))
     lines = lines_of(window_of(run, display), run, session.now.selected, pins)
     by = None if baseline is None else baseline.id
     table = pins_html(lines, display.pins_by, by, buttons=False)
     reasons = [_reasons(run, session.now.selected, lines[0].color, PRESENT)]
     reasons += [_reasons(pin.run, edited(pin), pin.hex, pin.name) for pin in pins if pin.run is not None]
-    return _section(
+    return section(
         Text("Pins"),
         Text('<div class="table">{table}</div><h3>Why</h3>', table=table),
         *reasons,
@@ -342,7 +332,7 @@ def _scenario(session: Session) -> str:
     files = Text.joined(", ", sorted(files_of(scenario)))
     beside = Text("<p>It needs these recordings beside it: {files:html}.</p>", files=files) if files else ""
     how = Text("<p>To compute the run again, save this text as scenario.toml and give the command above.</p>")
-    return _section(
+    return section(
         Text("Scenario"), how, beside, Text("<pre>{to_toml:html}</pre>", to_toml=to_toml(scenario))
     )
 

@@ -23,6 +23,7 @@ from schuler_bench.editing.limits import (
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, PictureView, Tab
+from schuler_bench.views.requirements.report_button import ReportButton
 from schuler_bench.views.requirements.table import requirements_html
 
 
@@ -33,6 +34,7 @@ class RequirementsView(PictureView[str]):
     place = "lower"
     group = "decide"
     look_for = Text("Type limits into the table: it says who meets them, and the plots show them.")
+    asks = ("report",)
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
@@ -48,12 +50,18 @@ class RequirementsView(PictureView[str]):
             self._note = gui.add_html("")
             self._seeds = gui.add_html("")
             self._table = gui.add_html("")
+            self._report = ReportButton(self.frame)
+
+    def follow_scenario(self) -> None:
+        """Offer the report where there are limits."""
+        self.follow_jobs()
 
     def follow_jobs(self) -> None:
-        """Say why the seeds are not judged."""
-        words = notices.note(self._judge.words, "warning")
+        """Say why the seeds are not judged, and how far the report is; save it once it is made."""
+        words = notices.note((*self._judge.words, *self._report.words), "warning")
         if self._seeds.content != words:
             self._seeds.content = words
+        self._report.follow()
 
     def take_new(self) -> bool:
         """Whether more seeds have just been judged."""
