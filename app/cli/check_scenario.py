@@ -51,6 +51,10 @@ SCENARIO_CHECKER = Checker(_recognises, check_scenario)
 
 
 def _environment(scenario: Scenario) -> Environment | StrapdownEnvironment:
+    if scenario.on_ins:
+        from navcore.engine.drivers.outside import prepared
+
+        return prepared(scenario)[1]
     if not scenario.strapdown:
         return environment(scenario)
     from navcore.engine.strapdown_environment import strapdown_environment

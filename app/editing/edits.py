@@ -13,7 +13,7 @@ from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
 from navcore.motion.static import AttitudeMotion
 from navcore.scenario.bounds import MAX_METHODS
-from navcore.scenario.file import blocks_to_toml, parse_toml
+from navcore.scenario.file import FILE_FIELDS, blocks_to_toml, parse_toml
 from navcore.scenario.frozen import frozen_method
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -200,7 +200,7 @@ def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenari
 
 def files_of(scenario: Scenario) -> set[str]:
     """Paths of the recordings that the scenario runs on."""
-    blocks = (scenario.motion, scenario.reference, scenario.imu)
+    blocks = (getattr(scenario, block) for block in dict.fromkeys(block for block, _ in FILE_FIELDS))
     named = (getattr(block, "file", None) for block in blocks)
     return {path for files in named for path in ((files,) if isinstance(files, str) else files or ())}
 

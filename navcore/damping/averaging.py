@@ -32,7 +32,10 @@ class HalfPeriodAveraging(Damping):
         ),
         Need(
             "simulated IMU",
-            Text("needs a simulated IMU: its forecast comes from a simulated alignment record (no imu.file)"),
+            Text(
+                "needs a simulated IMU: its forecast comes from a simulated alignment record (no imu.file or "
+                "ins.file)"
+            ),
         ),
     )
 

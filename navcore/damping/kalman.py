@@ -34,7 +34,9 @@ class Kalman(Damping):
         ),
         Need(
             "simulated IMU",
-            Text("needs a simulated IMU: the filter must be told its random errors (no imu.file)"),
+            Text(
+                "needs a simulated IMU: the filter must be told its random errors (no imu.file or ins.file)"
+            ),
         ),
     )
 

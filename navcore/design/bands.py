@@ -16,6 +16,7 @@ from navcore.design.ship import Ship
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.stochastic import require_sensors
 
 Kind = Literal["covariance", "filter", "none"]
 
@@ -79,8 +80,9 @@ def covariance_bands(
     Raises
     ------
     InputError
-        The motion cannot be carried out.
+        The motion cannot be carried out, or the scenario runs on ``[ins]``, whose sensors are not known.
     """
+    require_sensors(scenario)
     ship, bands = Ship(scenario), []
     for method in scenario.method:
         if cancelled is not None and cancelled():

@@ -21,6 +21,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.stochastic import require_sensors
 
 
 def budget(
@@ -50,7 +51,7 @@ def budget(
     Raises
     ------
     InputError
-        The motion cannot be carried out.
+        The motion cannot be carried out, or the scenario runs on ``[ins]``, whose sensors are not known.
 
     Examples
     --------
@@ -59,6 +60,7 @@ def budget(
     >>> found.floor.rms.tilt_rad < found.methods[1].total.rms.tilt_rad
     True
     """
+    require_sensors(scenario)
     ship = Ship(scenario)
     scenario = ship.scenario
     unstated = assumed_zero(scenario, steady)

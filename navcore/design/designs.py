@@ -66,6 +66,12 @@ def designs(
     require_limits(scenario)
     if seeds < 1:
         raise InputError(Fault("", "--seeds", seeds, Text("must be >= 1")))
+    if scenario.on_ins and not as_set:
+        told = Text(
+            "is needed on [ins]: a recording is one draw, on which networks are not tuned for a share; tune "
+            "one with tune, then judge it"
+        )
+        raise InputError(Fault("", "--as-set", None, told))
     share = 0.0 if as_set else _TUNING_SHARE
     if as_set:
         methods, left_out, early = scenario.method, (), False
@@ -85,7 +91,9 @@ def designs(
     shares = tuple(sorted(shares_of(ship, methods, found), key=lambda share: share.order))
     left_out = (*((one.name, one.reason) for one in scenario.refused), *left_out)
     result = Designs(len(found), shares, assumed_zero(scenario), left_out, stopped=stopped)
-    return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
+    if result.met or stopped or scenario.on_ins:
+        return result
+    return replace(result, needed=needed(scenario, shares, cancelled))
 
 
 def _few(scenario: Scenario, methods: Sequence[Method], seeds: int) -> int:

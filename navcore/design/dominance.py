@@ -157,7 +157,7 @@ def why(
     scenario = run.scenario
     remarks = _remarks(scenario)
     ship = Ship(_as_error_model(scenario))
-    known, count = scenario.imu.file is None, len(run.methods)
+    known, count = scenario.imu.file is None and not scenario.on_ins, len(run.methods)
     methods = []
     for index, method in enumerate(run.methods):
         if cancelled():
@@ -185,8 +185,11 @@ def _remarks(scenario: Scenario) -> tuple[str, ...]:
         Text("A recorded IMU: its errors are not known one by one, so only the periods are given."): (
             scenario.imu.file is not None
         ),
+        Text("The output of an INS does not tell the errors of its sensors: only the periods are given."): (
+            scenario.on_ins
+        ),
         Text("The recorded log counts as one source: what it errs by is not known part by part."): (
-            scenario.imu.file is None and scenario.reference.kind == "file"
+            scenario.imu.file is None and scenario.reference.kind == "file" and not scenario.on_ins
         ),
         Text("The shares come from the linear error model, not from the strapdown."): (
             scenario.imu.file is None and scenario.strapdown

@@ -119,6 +119,8 @@ class Setting:
     def figures(self) -> Figures:
         """Root mean squares of the errors; None, infinite or NaN where there is none."""
         ship = self.ship
+        if ship.scenario.on_ins:
+            return self._recorded
         if self.instability or (ship.along_run and not self.loop.stable):
             return Figures()
         if not ship.along_run:
@@ -131,6 +133,28 @@ class Setting:
                 return Figures()
         variances = ship.along(self.method)
         return mean_figures(variances.t_s, variances.total)
+
+    @property
+    def _recorded(self) -> Figures:
+        """Root mean squares over a recording of an INS, against its reference."""
+        scenario = self.ship.scenario
+        if self.instability or not self.loop.stable:
+            return Figures()
+        run = simulate(alone(scenario, self.method)).methods[0]
+        if scenario.truth.file is None or run.status != "ok":
+            return Figures()
+        of = run.errors
+        level = (_both(of["phi_e_rad"], of["phi_n_rad"]), _both(of["dve_mps"], of["dvn_mps"]))
+        return Figures(*level, _told(of["phi_u_rad"]["rms"]), _told(of["position_m"]["rms"]))
+
+
+def _both(east: dict[str, float], north: dict[str, float]) -> float | None:
+    """Root mean square of one level channel from that of both."""
+    return _told(math.sqrt(0.5 * (east["rms"] ** 2 + north["rms"] ** 2)))
+
+
+def _told(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 def growing(setting: Setting) -> Iterator[str]:

@@ -34,6 +34,8 @@ def modelled(scenario: Scenario) -> Modelled:
     scenario : Scenario
         Complete and checked.
     """
+    if scenario.on_ins:  # every setting is run on the recording itself
+        return Modelled(scenario, no_floor=Text("ins.file: the sensors stay inside the INS"))
     notes, reasons = [], []
     if scenario.reference.kind == "file":
         scenario, note, reason = _with_log(scenario)

@@ -15,7 +15,7 @@ from navcore.engine.environment import stretches_of
 from navcore.motion.truth import Stretches
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
-from navcore.scenario.stochastic import StochasticModel, stochastic_model
+from navcore.scenario.stochastic import StochasticModel, require_sensors, stochastic_model
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +77,7 @@ class Ship:
 
     def along(self, method: Method) -> Along:
         """Variances of each source along the run, for a method whose law is known in advance."""
+        require_sensors(self.scenario)
         return along(self.scenario, method, self.course, self.model, self.columns)
 
     @cached_property

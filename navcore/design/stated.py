@@ -1,7 +1,7 @@
 """Standard deviations of constants: which field states each of them, and which are stated in no way."""
 
 from navcore.scenario.model import Scenario
-from navcore.scenario.stochastic import CONSTANTS
+from navcore.scenario.stochastic import CONSTANTS, tells_constants
 
 
 def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
@@ -17,8 +17,7 @@ def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
     fields = []
     for _, block, deviation, number in CONSTANTS:
         settings = getattr(scenario, block)
-        recorded = block == "imu" and settings.file is not None
-        if recorded or (block == "reference" and settings.kind != "log"):
+        if not tells_constants(scenario, block):
             continue
         if steady and block == "initial_error":
             continue

@@ -44,7 +44,7 @@ from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError, StoppedError, UnstableError
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
-from navcore.quantities import QUANTITIES
+from navcore.quantities import QUANTITIES, components
 from navcore.scenario.model import Scenario
 
 _GAIN = 1e-4
@@ -112,10 +112,13 @@ def tune(
     limits = [read_requirement(one) if isinstance(one, str) else one for one in require]
     limits += own_limits(scenario.requirement, limits)
     require_consistent(limits)
+    if scenario.on_ins:
+        scenario = _on_ins(scenario, wanted, limits)
     varied = read_varied(scenario, vary, whole)
     index = varied[0].method
     along = along or over_run((*wanted.names, *(one.name for one in limits)))
-    along = along or scenario.method[index].policy.tunes
+    along = along or scenario.method[index].policy.tunes or scenario.on_ins
+    confirm = confirm and not scenario.on_ins
     defaults = limits_by_default(wanted, limits) if default_limits else []
 
     def searched(over_the_run: bool, begin: float, end: float) -> Tuned:
@@ -158,6 +161,23 @@ def tune(
         "the best setting of the steady state is no better in the runs; this is the best over the run"
     )
     return offered(replace(over, warnings=(note, *over.warnings)))
+
+
+def _on_ins(scenario: Scenario, objective: Objective, limits: Sequence[Requirement]) -> Scenario:
+    """Return a scenario on a recorded INS as a search takes it; refuse errors that no reference tells.
+
+    Every setting is run on the recording itself, and there are no seeds to confirm it on.
+    """
+    from navcore.engine.drivers.outside import settled, unknown_errors
+
+    placed = settled(scenario)
+    unknown = unknown_errors(placed)
+    for name in (*objective.names, *(one.name for one in limits)):
+        kind = QUANTITIES[name].kind
+        if kind is not None and unknown.intersection(components(kind)):
+            told = Text("is not known on this recording: a [truth] that holds it is needed")
+            raise InputError(Fault("", "--objective", name, told))
+    return placed
 
 
 def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:

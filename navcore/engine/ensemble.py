@@ -20,10 +20,10 @@ from navcore.engine.run import Span, spans
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.error_batch import WIDTH, ErrorModelBatch
-from navcore.mechanization.recorder import FINAL, POSITION
+from navcore.mechanization.recorder import FINAL, NAMES, POSITION
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
-from navcore.scenario.stochastic import CONSTANTS, stated_constants, stochastic_model
+from navcore.scenario.stochastic import CONSTANTS, require_sensors, stated_constants, stochastic_model
 
 SEARCHED = 1_000_000
 """Added to the seed of a run by what a search draws, so that it never meets what judges it."""
@@ -63,6 +63,7 @@ def drawn(scenario: Scenario, number: int, *, stated_only: bool = False) -> Scen
         Draw only biases and initial errors whose standard deviation the scenario states; the others keep the
         numbers that it gives. By default all are drawn (`stochastic_model`).
     """
+    require_sensors(scenario)
     seed = (scenario.run.seed + number) % 2**31
     model = stochastic_model(scenario)
     generator = np.random.default_rng([_STREAM, seed])
@@ -128,10 +129,12 @@ def outcomes(
     Returns
     -------
     list of tuple of Outcome
-        For each seed one a method.
+        For each seed one a method; on ``[ins]``, where there is one recording and nothing to draw, one of it.
     """
     kept = {"method": tuple(methods), "run": scenario.run.model_copy(update={"output_step_s": 86400.0})}
     bare = scenario.model_copy(update=kept)
+    if scenario.on_ins:
+        return [_of_recording(bare, progress, cancelled)]
     done: list[tuple[Outcome, ...]] = []
     gains = {k: Gains() for k, method in enumerate(bare.method) if method.kind.carrying == "filter"}
     finished = 0.0
@@ -166,6 +169,15 @@ def outcomes(
         for some in pool.map(block, parts) if width else pool.map(one, numbers):
             done += some
     return done
+
+
+def _of_recording(
+    scenario: Scenario, progress: Callable[[float], None] | None, cancelled: Callable[[], bool] | None
+) -> tuple[Outcome, ...]:
+    run = simulate(scenario, progress, cancelled)
+    return tuple(
+        Outcome(one.status == "ok", one.spans, one.errors[NAMES[POSITION]]["final"]) for one in run.methods
+    )
 
 
 def width_of(scenario: Scenario) -> int:

@@ -8,6 +8,8 @@ import math
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from navcore.engine.notices import input_notices, site_notices
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import kept, recorded_state
@@ -41,6 +43,8 @@ class Environment:
         Log errors at the log's epochs.
     warnings : tuple of str
         What the recordings and the motion make necessary to say.
+    rows : ndarray of int, or None
+        Steps at which a method's state is kept; None for those of ``run.output_step_s``.
     """
 
     steps: int
@@ -49,6 +53,7 @@ class Environment:
     sensors: SensorErrors
     reference: ReferenceErrors
     warnings: tuple[str, ...]
+    rows: np.ndarray | None = None
 
 
 def start_utc(scenario: Scenario) -> float | None:
@@ -85,7 +90,7 @@ def truth_of(scenario: Scenario, steps: int, step_s: float) -> Truth:
         try:
             return scenario.motion.truth(2 * steps + 1, 0.5 * step_s, site, scenario.earth, begin)
         except InputError as error:
-            raise error.located("", "motion.") from None
+            raise error.located("", f"{scenario.motion.block}.") from None
 
     return kept(("truth", _truth_key(scenario, steps, step_s)), make)
 

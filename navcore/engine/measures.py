@@ -71,7 +71,9 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
         radians; ``requirements`` where the scenario has any: each with its value, its verdict, the standard
         deviations that the run draws as 0, and the share of seeds that meet it; ``verdict`` on all of them.
         An infinite value, or one that is not a number, is None. ``refused`` names the methods that the rest
-        of the scenario refuses, where there are any, with the reason.
+        of the scenario refuses, where there are any, with the reason. A run on ``[ins]`` has ``against``
+        ("truth" or "recorded") and ``not_known``, the errors of which the reference says nothing; with a
+        reference the INS as it was recorded is the first method.
 
     Examples
     --------
@@ -87,13 +89,21 @@ def metrics(run: Run, shares: Sequence[SeedShare] = ()) -> dict[str, Any]:
         "versions": versions(),
         "elapsed_s": round(run.elapsed_s, 4),
         "computed_on": run.computed_on,
+        **_against(run),
         "warnings": list(run.warnings),
         "methods": [
             _method(method) | _requirements(run.scenario, method, shares[k] if shares else None)
-            for k, method in enumerate(run.methods)
+            for k, method in enumerate(run.lines)
         ],
         **({"refused": [one.as_dict() for one in refused]} if refused else {}),
     }
+
+
+def _against(run: Run) -> dict[str, Any]:
+    """What the errors of a run on ``[ins]`` are, and which of them are not known; nothing of another run."""
+    if run.against is None:
+        return {}
+    return {"against": run.against.what, "not_known": list(run.against.not_known)}
 
 
 def judged(requirement: Requirement, run: MethodRun) -> tuple[float | None, bool]:
@@ -277,6 +287,7 @@ def _method(run: MethodRun) -> dict[str, Any]:
         "errors": {
             name: {key: finite(value) for key, value in statistics.items()}
             for name, statistics in run.errors.items()
+            if not math.isnan(statistics["rms"])
         },
     }
 

@@ -74,7 +74,7 @@ def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
 
 def _beside_recordings(scenario: Scenario) -> Iterator[str]:
     """Yield which sensors' and initial errors the scenario adds to what is recorded."""
-    if scenario.imu.file is not None:
+    if scenario.imu.file is not None or scenario.on_ins:
         return
     given = [*_given(scenario.imu, "imu"), *_given(scenario.initial_error, "initial_error")]
     if not given:

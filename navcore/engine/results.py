@@ -19,6 +19,7 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.reads import recordings
 
 if TYPE_CHECKING:
+    import numpy as np
     import pyarrow
 
 Format = Literal["parquet", "csv"]
@@ -98,40 +99,57 @@ def write_results(
 def timeseries(run: Run) -> pyarrow.Table:
     """Output rows of all methods one after the other, columns as in interface.md; xi is 0 while undamped.
 
-    A strapdown run adds the navigation solution, a run with a Kalman filter the standard deviations that it
-    gives itself; they are empty for the other methods.
+    A run on ``[ins]`` adds the damped output, and leaves errors that are not known empty. A strapdown run
+    adds the navigation solution, a run with a Kalman filter the standard deviations that it gives itself;
+    they are empty for the other methods.
     """
     import numpy as np
     import pyarrow as pa
 
     from navcore.mechanization.recorder import DAMPED_COLUMN, XI_COLUMN
 
-    def joined(column: int) -> np.ndarray:
-        return np.concatenate([m.rows[:, column] for m in run.methods])
+    methods = run.lines
 
-    names = [m.method.name for m in run.methods]
-    counts = [len(m.t_s) for m in run.methods]
+    def joined(column: int) -> np.ndarray:
+        return np.concatenate([m.rows[:, column] for m in methods])
+
+    names = [m.method.name for m in methods]
+    counts = [len(m.t_s) for m in methods]
     columns: dict[str, object] = {
         "method": pa.array(np.repeat(np.array(names, dtype=object), counts), pa.string()),
-        "t_s": np.concatenate([m.t_s for m in run.methods]),
+        "t_s": np.concatenate([m.t_s for m in methods]),
     }
-    columns |= {name: joined(index) for index, name in enumerate(COMPONENTS)}
+    columns |= {name: _known(joined(index)) for index, name in enumerate(COMPONENTS)}
     columns |= {"damped": joined(DAMPED_COLUMN).astype(np.int8), "xi": joined(XI_COLUMN)}
-    navigation = [m.navigation for m in run.methods if m.navigation is not None]
+    output = [m.output for m in methods if m.output is not None]
+    if output:
+        from navcore.engine.against import OUTPUT
+
+        damped = np.concatenate(output)
+        columns |= {name: _known(damped[:, index]) for index, name in enumerate(OUTPUT)}
+    navigation = [m.navigation for m in methods if m.navigation is not None]
     if navigation:
         from navcore.mechanization.strapdown.records import NAVIGATION
 
         solution = np.concatenate(navigation)
         columns |= {name: solution[:, index] for index, name in enumerate(NAVIGATION)}
-    if any(m.sigma is not None for m in run.methods):
-        filtered = np.repeat([m.sigma is not None for m in run.methods], counts)
-        empty = [np.zeros((len(m.t_s), len(COMPONENTS))) if m.sigma is None else m.sigma for m in run.methods]
+    if any(m.sigma is not None for m in methods):
+        filtered = np.repeat([m.sigma is not None for m in methods], counts)
+        empty = [np.zeros((len(m.t_s), len(COMPONENTS))) if m.sigma is None else m.sigma for m in methods]
         sigma = np.concatenate(empty)
         columns |= {
             f"sigma_{name}": pa.array(sigma[:, index], mask=~filtered)
             for index, name in enumerate(COMPONENTS)
         }
     return pa.table(columns)
+
+
+def _known(column: np.ndarray) -> pyarrow.Array:
+    """Values of a column; what is not a number is left empty."""
+    import numpy as np
+    import pyarrow as pa
+
+    return pa.array(column, mask=np.isnan(column))
 
 
 def _names(format: Format) -> tuple[str, str, str]:

@@ -1,5 +1,7 @@
 """Result of a simulation."""
 
+from __future__ import annotations
+
 import hashlib
 import math
 from collections.abc import Iterable
@@ -141,6 +143,8 @@ class MethodRun:
         Settling of the heading by its azimuth loop, s; infinite where nothing holds it.
     spans : tuple of Span
         The whole run, and from each ``from_h`` of the scenario's requirements on; in order.
+    output : ndarray, shape (m, 5), or None
+        Of a run on ``[ins]``: the damped output at the output rows, `navcore.engine.against.OUTPUT`.
     place : int
         By which pictures know the method, and from which its colour follows (`in_places`).
     """
@@ -162,6 +166,7 @@ class MethodRun:
     growth_per_s: float | None = None
     heading_settling_s: float = math.inf
     spans: tuple[Span, ...] = ()
+    output: np.ndarray | None = None
     place: int = 0
 
     def __repr__(self) -> str:
@@ -184,6 +189,28 @@ class MethodRun:
         xi = self.law_series[damped, _XI]
         share = float(np.mean(damped))
         return LawInForce(share, float(np.min(xi)), float(np.mean(xi)), float(np.max(xi)))
+
+
+@dataclass(frozen=True)
+class Against:
+    """What the errors of a run on ``[ins]`` are.
+
+    Attributes
+    ----------
+    what : {"truth", "recorded"}
+        Damped minus reference, or damped minus recorded.
+    epochs : int
+        Epochs of the reference over which statistics are formed; 0 without one.
+    not_known : tuple of str
+        Errors of which the reference says nothing.
+    recorded : MethodRun or None
+        The INS as it was recorded, against the reference.
+    """
+
+    what: Literal["truth", "recorded"]
+    epochs: int = 0
+    not_known: tuple[str, ...] = ()
+    recorded: MethodRun | None = None
 
 
 def in_places(methods: Iterable[MethodRun], places: Iterable[int] | None = None) -> tuple[MethodRun, ...]:
@@ -214,6 +241,8 @@ class Run:
         Rates of a strapdown run.
     scenario_sha256 : str
         `navcore.scenario.file.scenario_hash`, taken when the run was made: its recordings may go later.
+    against : Against or None
+        Of a run on ``[ins]``: what its errors are.
     """
 
     scenario: Scenario
@@ -224,6 +253,7 @@ class Run:
     elapsed_s: float
     sampling: Sampling | None = None
     scenario_sha256: str = ""
+    against: Against | None = None
 
     def __repr__(self) -> str:
         """One line: what was run, and the status of each method."""
@@ -236,8 +266,16 @@ class Run:
         return drawn("run_tables", self)
 
     @property
+    def lines(self) -> tuple[MethodRun, ...]:
+        """All that tables and files show: an INS as it was recorded stands before the methods."""
+        recorded = None if self.against is None else self.against.recorded
+        return self.methods if recorded is None else (recorded, *self.methods)
+
+    @property
     def computed_on(self) -> str:
         """Which states metrics and plots cover, in words."""
+        if self.against is not None and self.against.what == "truth":
+            return Text("{epochs} epochs of the reference", epochs=self.against.epochs)
         if self.sampling is None:
             return Text("every step of the mechanization, {step_s:g} s", step_s=self.scenario.run.step_s)
         rates = self.sampling

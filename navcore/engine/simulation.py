@@ -2,6 +2,7 @@
 
 from navcore.engine.drivers.common import Cancelled, Progress
 from navcore.engine.drivers.linear import run_linear
+from navcore.engine.drivers.outside import run_outside
 from navcore.engine.run import Run
 from navcore.scenario.model import Scenario
 
@@ -50,4 +51,6 @@ def simulate(
         from navcore.engine.drivers.strapdown import run_strapdown
 
         return run_strapdown(scenario, progress, cancelled)
+    if scenario.on_ins:
+        return run_outside(scenario, progress, cancelled)
     return run_linear(scenario, progress, cancelled, before)

@@ -128,6 +128,10 @@ def why_not(scenario: Scenario) -> str:
             'fidelity "channel" leaves the Earth\'s rotation and the heading out, which a strapdown run has: '
             'set run.fidelity to "error_model"'
         )
+    if scenario.on_ins:
+        return Text(
+            "the sensors of a recorded INS stay inside it: there is nothing that a strapdown could run on"
+        )
     if scenario.imu.file is not None:
         return Text(
             "a recorded IMU has errors that nobody knows, so that no linear model can be fed with them"

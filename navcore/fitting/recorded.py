@@ -155,8 +155,9 @@ class FittedLog(Answer):
 
 
 def can_fit(scenario: Scenario) -> bool:
-    """Whether a scenario has both a recorded log and the track recorded with it."""
-    return scenario.reference.kind == "file" and isinstance(scenario.motion, TrackMotion)
+    """Whether a scenario has both a recorded log and the track recorded with it; that of an INS errs too."""
+    recorded = scenario.reference.kind == "file" and isinstance(scenario.motion, TrackMotion)
+    return recorded and not scenario.on_ins
 
 
 def fit_of(scenario: Scenario) -> FittedLog:

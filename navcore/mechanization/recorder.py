@@ -119,7 +119,11 @@ def output_steps(steps: int, step_s: float, output_step_s: float) -> np.ndarray:
 
 
 def make_recorder(
-    steps: int, step_s: float, output_step_s: float, axes: np.ndarray | None = None
+    steps: int,
+    step_s: float,
+    output_step_s: float,
+    axes: np.ndarray | None = None,
+    rows: np.ndarray | None = None,
 ) -> Recorder:
     """Make the empty arrays for a run of ``steps`` steps.
 
@@ -131,8 +135,10 @@ def make_recorder(
         Step, and interval of the output rows, s.
     axes : ndarray of `AXES`, shape (steps + 1,) or (1,), optional
         At the steps; without them, as at the equator on a course north.
+    rows : ndarray of int, shape (m,), optional
+        Steps of the output rows, where they are not those of the interval.
     """
-    row_steps = output_steps(steps, step_s, output_step_s)
+    row_steps = output_steps(steps, step_s, output_step_s) if rows is None else rows
     every = reading_steps(step_s)
     width = max(1, math.ceil((steps + 1) / MAX_BINS)) if steps + 1 > 2 * MAX_BINS else 1
     bins = math.ceil((steps + 1) / width)

@@ -54,10 +54,13 @@ class MotionParameters(Entry, ABC):
         The motion is read from files: `streams` gives what they hold.
     carries_recorded_imu : bool
         The motion can stand beside a recorded IMU, whose own motion is not known.
+    block : str
+        Block of the scenario that its faults name.
     """
 
     recorded: ClassVar[bool] = False
     carries_recorded_imu: ClassVar[bool] = False
+    block: ClassVar[str] = "motion"
     kind: Any  # a Literal in each subclass
 
     @property

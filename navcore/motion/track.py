@@ -205,7 +205,7 @@ class TrackMotion(MotionParameters):
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
-        key = "smoothed track", recorded_state(self), self.smoothing_s, self.heading_clock_s
+        key = "smoothed track", recorded_state(self), self
         return kept(key, lambda: _smooth(self.streams(), files, self.smoothing_s))
 
 
@@ -219,18 +219,27 @@ class _Smoothed:
     attitude: Spline | None
 
 
+def position_of(recording: Recording, file: object) -> Series:
+    """Positions of a recording; raises `InputError` (field ``file``) where there are none."""
+    if recording.position is None:
+        raise InputError(_missing(file, *_NO_POSITION))
+    return recording.position
+
+
+def _missing(file: object, what: str, remedy: str) -> Fault:
+    return Fault(
+        "", "file", file, Text("holds no {what}: add a file with {remedy}", what=what, remedy=remedy)
+    )
+
+
+_NO_POSITION = (Text("position"), Text("RMC or GGA sentences or lat_deg and lon_deg"))
+_NO_HEADING = (Text("heading"), Text("HDT or VHW sentences or heading_deg"))
+
+
 def _streams(recording: Recording, file: object) -> Streams:
     if recording.position is None or recording.heading is None:
-        raise InputError(
-            Fault(
-                "", "file", file, Text("holds no {what}: add a file with {remedy}", what=what, remedy=remedy)
-            )
-            for what, remedy, series in (
-                ("position", Text("RMC or GGA sentences or lat_deg and lon_deg"), recording.position),
-                ("heading", Text("HDT or VHW sentences or heading_deg"), recording.heading),
-            )
-            if series is None
-        )
+        streams = ((_NO_POSITION, recording.position), (_NO_HEADING, recording.heading))
+        raise InputError(_missing(file, *words) for words, series in streams if series is None)
     return Streams(recording, recording.position, recording.heading, recording.attitude)
 
 

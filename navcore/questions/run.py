@@ -92,17 +92,17 @@ class Ran(Answer):
             steps=run.computed_on,
         )
         yield from (one.line for one in run.scenario.refused)
-        yield Table(_LOOP, tuple(map(_loop_row, run.methods)))
+        yield Table(_LOOP, tuple(map(_loop_row, run.lines)))
         for key, title in _STATISTICS.items():
             heads = (Column(title), *(Column(error.symbol, error.kind.unit) for error in _SHOWN))
             rows = (
                 (one.method.name, *(one.errors[error.name][key] / error.kind.size for error in _SHOWN))
-                for one in run.methods
+                for one in run.lines
             )
             yield Table(heads, tuple(rows))
         yield from self._verdicts()
         warnings: list[str] = [Text("warning: {text}", text=text) for text in run.warnings]
-        for one in run.methods:
+        for one in run.lines:
             name = one.method.name
             warnings += (Text("warning: {name}: {text}", name=name, text=text) for text in one.warnings)
         yield from ("", *warnings) if warnings else ()
@@ -120,7 +120,7 @@ class Ran(Answer):
         rows: list[tuple[str, ...]] = []
         for place, one in enumerate(limits):
             limit = Text("{clause}: {words}", clause=one.clause, words=one.words) if one.clause else one.words
-            for k, method in enumerate(run.methods):
+            for k, method in enumerate(run.lines):
                 judgement = shares[k].limits[place] if shares else None
                 value, word = verdict(one, method, judgement)
                 said = [] if judgement is None else [_share(judgement)]

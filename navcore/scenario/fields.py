@@ -1,5 +1,6 @@
 """Fields of a scenario and what follows from them; `navcore.scenario.model` checks the whole."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any, Literal
 
@@ -14,6 +15,7 @@ from navcore.networks.lqg import SensorFigures
 from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings, View
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
+from navcore.scenario.own_ins import REPLACED, Ins, TruthFile
 from navcore.scenario.requirement import MOST, Requirement
 from navcore.scenario.sampling import Sampling, sampling
 from navcore.sensors.imu import Imu
@@ -38,6 +40,8 @@ class ScenarioFields(Parameters):
     imu: Imu = Imu()
     alignment: Alignment = Alignment()
     initial_error: InitialError = InitialError()
+    ins: Ins = Ins()
+    truth: TruthFile = TruthFile()
     reference: Reference = Reference()
     method: tuple[Method, ...] = (Method(name="free"),)
     requirement: tuple[Requirement, ...] = Field(
@@ -48,6 +52,11 @@ class ScenarioFields(Parameters):
     def figures(self) -> SensorFigures:
         """Random errors of gyros, accelerometers and log, SI."""
         return _figures(self.imu, self.reference)  # pyright: ignore[reportArgumentType]
+
+    @property
+    def on_ins(self) -> bool:
+        """Whether it runs on the output of a ship's own INS."""
+        return self.ins.file is not None
 
     @property
     def earth(self) -> Earth:
@@ -83,10 +92,16 @@ class ScenarioFields(Parameters):
 
     def canonical(self) -> dict[str, Any]:
         """Complete mapping of every field, as written to scenario.toml (None left out)."""
-        data = self.model_dump(mode="json", by_alias=True, exclude_none=True)
-        return (
-            data if self.requirement else {key: value for key, value in data.items() if key != "requirement"}
-        )
+        left_out = {name for name, used in self._blocks_in_use() if not used}
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=left_out)
+
+    def _blocks_in_use(self) -> Iterator[tuple[str, bool]]:
+        """Yield blocks that few scenarios have, and those whose place ``[ins]`` takes."""
+        own = self.on_ins
+        yield "requirement", bool(self.requirement)
+        yield "ins", own
+        yield "truth", own and self.truth.file is not None
+        yield from ((name, not own) for name in REPLACED)
 
 
 @lru_cache(maxsize=64)

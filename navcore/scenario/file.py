@@ -22,7 +22,9 @@ from navcore.scenario.model import Scenario
 
 _NAMED = {"motion": "kind", "network": "id", "policy": "id", "switching": "id"}
 """Blocks that may be given by their name alone, and the field that bears it."""
-FILE_FIELDS = tuple((block, field) for block in ("motion", "reference", "imu") for field in ("file", "map"))
+FILE_FIELDS = tuple(
+    (block, field) for block in ("motion", "reference", "imu", "ins", "truth") for field in ("file", "map")
+)
 """Block and field of what names recordings."""
 
 

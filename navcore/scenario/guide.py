@@ -23,6 +23,7 @@ from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings, View
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.own_ins import Ins, TruthFile
 from navcore.scenario.requirement import Requirement
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
@@ -77,6 +78,8 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
     yield "[alignment]", Alignment, ""
     yield "[[alignment.motion]]", AlignmentMotion, ""
     yield "[initial_error]", InitialError, ""
+    yield "[ins]", Ins, ""
+    yield "[truth]", TruthFile, ""
     yield "[reference]", Reference, ""
     yield "[[reference.event]]", LogEvent, "also `event` of a method"
     yield "[[reference.outage]]", Outage, ""

@@ -16,8 +16,10 @@ from navcore.foundation.units import HOUR
 from navcore.networks.known import transfer_at
 from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.fields import ScenarioFields
+from navcore.scenario.ins_faults import ins_faults
 from navcore.scenario.method import Method
 from navcore.scenario.needs import need_faults
+from navcore.scenario.own_ins import REPLACED
 from navcore.scenario.refused import Refused, refused_methods
 from navcore.scenario.requirement import clause_faults
 from navcore.scenario.strapdown_faults import strapdown_faults
@@ -66,7 +68,12 @@ class Scenario(ScenarioFields):
             scenario = cls.model_validate(data)
         except ValidationError as error:
             raise InputError(faults_from(error, cls, data, where)) from None
-        scenario = scenario.with_sensors()
+        if scenario.on_ins:
+            replaced = Text("must be left out: [ins] takes its place")
+            faults = [Fault("", name, None, replaced) for name in REPLACED if name in data]
+            if faults:
+                raise InputError(faults).located(where)
+        scenario = scenario.with_ins().with_sensors()
         faults = list(scenario.faults())
         # A log that is not there is wrong input (interface.md), not a method that does not suit the scenario.
         without_log = scenario.reference.kind == "none" and any(one.reads_log for one in scenario.method)
@@ -85,6 +92,15 @@ class Scenario(ScenarioFields):
         scenario._refused = refused
         methods = tuple(m.model_copy(update={"name": m.label()}) for m in scenario.method)
         return scenario.model_copy(update={"method": methods})
+
+    def with_ins(self) -> Scenario:
+        """Return the scenario with the output of the ship's INS as its motion, where it runs on one."""
+        if not self.on_ins:
+            return self
+        log = self.reference
+        if log.kind == "none" and log.file is not None:
+            log = log.model_copy(update={"kind": "file"})
+        return self.model_copy(update={"motion": self.ins.track(), "reference": log})
 
     def with_sensors(self) -> Scenario:
         """Return the scenario with networks that are designed for its sensors and log."""
@@ -132,6 +148,7 @@ class Scenario(ScenarioFields):
         yield from clause_faults(self.requirement)
         yield from need_faults(self)
         yield from strapdown_faults(self)
+        yield from ins_faults(self)
 
 
 def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:

@@ -53,7 +53,7 @@ _UNMET = {
     "reference": _unless(lambda scenario: scenario.reference.kind != "none"),
     "log": _unless(lambda scenario: scenario.reference.kind == "log"),
     "coupled channels": _unless(lambda scenario: scenario.run.fidelity != "channel"),
-    "simulated IMU": _unless(lambda scenario: scenario.imu.file is None),
+    "simulated IMU": _unless(lambda scenario: scenario.imu.file is None and not scenario.on_ins),
     "standing start": _under_way,
     "below 85 deg": _unless(lambda scenario: abs(scenario.site.lat_deg) <= LARGEST_LATITUDE_DEG),
 }

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.networks.lqg import SensorFigures
 from navcore.scenario.model import Scenario
@@ -142,13 +144,36 @@ def drawn_as_zero(scenario: Scenario) -> tuple[str, ...]:
     return tuple(fields)
 
 
+def tells_constants(scenario: Scenario, block: str) -> bool:
+    """Whether a block of `CONSTANTS` says what its constants are: one that is recorded does not."""
+    if block == "reference":
+        return scenario.reference.kind == "log"
+    return not (scenario.on_ins or (block == "imu" and scenario.imu.file is not None))
+
+
+def require_sensors(scenario: Scenario) -> None:
+    """Refuse to say what errors of sensors do on the output of an INS, which does not tell them.
+
+    Raises
+    ------
+    InputError
+        The scenario runs on ``[ins]``.
+    """
+    if scenario.on_ins:
+        told = Text(
+            "the output of an INS does not tell the errors of its sensors, on which this rests: ask it of a "
+            "scenario with [motion], [imu] and [reference] of your own; run, tune and the limits of a run go "
+            "by the recording"
+        )
+        raise InputError(Fault("", "ins.file", scenario.ins.file, told))
+
+
 def given_deviations(scenario: Scenario) -> tuple[str, ...]:
     """Fields of standard deviations above 0 that the scenario gives and its seeds draw by."""
     fields = []
     for _, block, deviation, _ in CONSTANTS:
         settings = getattr(scenario, block)
-        recorded = block == "imu" and settings.file is not None
-        if recorded or (block == "reference" and settings.kind != "log"):
+        if not tells_constants(scenario, block):
             continue
         if np.any(getattr(settings, deviation) or 0.0):
             fields.append(f"{block}.{deviation}")

@@ -60,7 +60,7 @@ def recorded_window(motion: MotionParameters, reference: Reference) -> Window | 
     try:
         recorded = motion.streams()
     except InputError as error:
-        raise error.located("", "motion.") from None
+        raise error.located("", f"{motion.block}.") from None
     if recorded is not None:
         streams += recorded.series()
     if reference.kind == "file":
@@ -69,7 +69,7 @@ def recorded_window(motion: MotionParameters, reference: Reference) -> Window | 
         except InputError as error:
             raise error.located("", "reference.") from None
     return (
-        shared_window(streams, "reference.file" if reference.kind == "file" else "motion.file")
+        shared_window(streams, "reference.file" if reference.kind == "file" else f"{motion.block}.file")
         if streams
         else None
     )
@@ -119,13 +119,33 @@ def recorded_errors(
         values = values - to_navigation(of_arm, heading)
     valid = series.valid[within] & in_service(reference.outage, time_s)
     valid &= ~(np.hypot(values[:, 0], values[:, 1]) < reference.min_speed_mps)
-    error = values - velocity + event_velocity(reference.event, time_s)
+    error = np.where(valid[:, None], values - velocity + event_velocity(reference.event, time_s), 0.0)
+    hold_s = hold_time(series.interval_s)
+    time_s, error, valid = _with_silence(time_s, error, valid, series.interval_s, hold_s)
     return ReferenceErrors(
         time_s=time_s,
-        error=np.where(valid[:, None], error, 0.0),
+        error=error,
         valid=valid,
         body_frame=along_axes and reference.frame == "body",
-        hold_s=hold_time(series.interval_s),
+        hold_s=hold_s,
+    )
+
+
+def _with_silence(
+    time_s: np.ndarray, error: np.ndarray, valid: np.ndarray, interval_s: float, hold_s: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Epochs with an invalid one where a reading is missing that begins a gap longer than a reading is held.
+
+    The whole recording is at hand: that the log falls silent is known at once, not when a reading is too old.
+    """
+    gaps = np.flatnonzero(np.diff(time_s) > hold_s)
+    if not gaps.size or interval_s <= 0.0:
+        return time_s, error, valid
+    missing = time_s[gaps] + interval_s
+    return (
+        np.insert(time_s, gaps + 1, missing),
+        np.insert(error, gaps + 1, 0.0, axis=0),
+        np.insert(valid, gaps + 1, False),
     )
 
 
@@ -186,7 +206,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
     if count:
         gaps = Text("{count} gaps (longest {longest:.1f} s)", count=count, longest=longest)
         yield Text(
-            "{source}: {gaps}, undamped after {hold_time:.1f} s",
+            "{source}: {gaps}, undamped in those longer than {hold_time:.1f} s",
             source=series.source,
             gaps=gaps,
             hold_time=hold_time(series.interval_s),

@@ -63,7 +63,7 @@ def run_points(plan: Plan, numbers: Iterable[int], stopped: Stopped) -> Iterator
         except InputError as error:
             yield from ((number, _refused(plan, number, error)) for number in members)
             continue
-        width = 0 if single.whole else width_of(scenario)
+        width = 0 if single.whole or scenario.on_ins else width_of(scenario)
         # one run of the error model alone may know methods of the run before
         if width and (scenario.strapdown or len(members) > 1):
             yield from _batches(plan, scenario, members, width, stopped)
@@ -98,7 +98,7 @@ class _Single:
 
     def results(self, scenario: Scenario) -> Sequence[Result] | None:
         """Result of each method; None when it was stopped."""
-        if self.whole or scenario.strapdown:
+        if self.whole or scenario.strapdown or scenario.on_ins:
             run = simulate(scenario, None, self._stopped, self._before)
             self._before = run
             return None if run.status == "stopped" else run.methods

@@ -143,7 +143,7 @@ def test_what_the_user_should_know_is_said(files, tmp_path):
     other = recording_notices(StaticMotion(), Reference(kind="file", file=str(vhw), speed="ground"))
     assert any("holds no ground speed" in notice for notice in other)
     assert any("without a recorded track" in notice for notice in other)
-    assert any("1 gaps (longest 20.0 s), undamped after 5.0 s" in notice for notice in other)
+    assert any("1 gaps (longest 20.0 s), undamped in those longer than 5.0 s" in notice for notice in other)
     unused = recording_notices(StaticMotion(), Reference(kind="log", file=files["log"]))
     assert unused == ('reference.file is not used with reference.kind = "log"',)
     gappy = write(

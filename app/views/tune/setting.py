@@ -151,7 +151,7 @@ class SettingPanel:
             "objective": display.objective,
             "vary": fields,
             # without a random error every setting is alike in the steady state
-            "along": stochastic_model(scenario).silent,
+            "along": stochastic_model(scenario).silent or scenario.on_ins,
             "beyond_sliders": display.beyond_sliders,
         }
 

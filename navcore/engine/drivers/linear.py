@@ -201,7 +201,9 @@ def _damped(
         reference=seen_by(method, env.reference),
         law=law_of(method, network_of(scenario, method), step_s),
         x=state.copy(),
-        recorder=make_recorder(env.steps, step_s, scenario.run.output_step_s, env.coefficients.axes),
+        recorder=make_recorder(
+            env.steps, step_s, scenario.run.output_step_s, env.coefficients.axes, env.rows
+        ),
     )
     return run, ()
 
