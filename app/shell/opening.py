@@ -88,6 +88,25 @@ class Opening:
             say(Text("2 of 2: the ship's motion and log from it."))
             self._run_on(upload)
 
+    def play(self, files: Mapping[str, str], what: str) -> None:
+        """Keep the recordings of an answer and open the scenario that runs on them, the last of the files.
+
+        Parameters
+        ----------
+        files : mapping from str to str
+            Text by name.
+        what : str
+            What it shows.
+        """
+        session = self._session
+        title = Text("{what} cannot be played; nothing was changed", what=what)
+        with session.lock, notices.told(self._client, title, self._refresh):
+            *recordings, (name, text) = files.items()
+            for recording, content in recordings:
+                session.uploads.add(recording, content.encode())
+            opened = opened_scenario(name, text.encode(), session.uploads)
+            session.change(opened, None, origin=name[:60], selected=first_editable(opened))
+
     def _take_study(self, name: str, text: str) -> None:
         """Keep an uploaded study for the tab "Study", which shows it from now on."""
         session = self._session

@@ -125,6 +125,14 @@ class Answer:
         """Give tables and sentences in the order in which they are read."""
         raise NotImplementedError
 
+    def plays(self) -> tuple[str, ...]:
+        """Name what a scenario of the answer's own can show; nothing where there is no such scenario."""
+        return ()
+
+    def played(self, place: int) -> dict[str, str]:
+        """Return the files that show one of `plays`: text by name, the scenario last."""
+        raise NotImplementedError
+
     def assumptions(self) -> Iterator[str]:
         """Give a sentence on what was assumed; none where nothing was."""
         return assumptions(self.assumed_zero)

@@ -2,7 +2,9 @@
 
 import json
 import math
+from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,8 @@ from navcore.quantities import COMPONENTS
 from navcore.questions.worst import WorstQuestion
 from navcore.scenario.model import Scenario
 from schuler_bench.cli import main
+from schuler_bench.session.session import Session
+from schuler_bench.shell.opening import Opening
 
 CLASSIC2: dict[str, Any] = {"name": "classic2", "damping": "external", "network": {"id": "classic2"}}
 TURNING: dict[str, Any] = {
@@ -48,9 +52,9 @@ def scenario_of(*methods: dict[str, Any], **blocks: Any) -> Scenario:
     return Scenario.parse(data)
 
 
-def played(scenario: Scenario, found: Worst, folder: Path) -> dict[str, np.ndarray]:
+def played(found: Worst, folder: Path) -> dict[str, np.ndarray]:
     """Largest errors of a run under each log that is written, by method."""
-    for name, text in files_of(scenario, found):
+    for name, text in files_of(found):
         (folder / name).write_text(text)
     shown = {}
     for place, method in enumerate(found.methods):
@@ -68,7 +72,7 @@ def test_the_log_that_is_written_does_what_is_stated(rate: float | None, frame: 
     optimal = {"name": "optimal", "damping": "external", "network": {"id": "optimal", "rho": 0.01}}
     scenario = scenario_of(CLASSIC2, optimal, motion=TURNING, reference={"frame": frame, "rate_hz": 0.5})
     found = worst(scenario, 0.8, rate)
-    shown = played(scenario, found, tmp_path)
+    shown = played(found, tmp_path)
     assert [*shown] == ["classic2", "optimal"]
     for method in found.methods:
         np.testing.assert_allclose(shown[method.name], method.largest, rtol=1e-3)
@@ -79,17 +83,13 @@ def test_outages_and_a_moored_ship_are_in_the_worst_case(tmp_path: Path) -> None
     log = {"outage": [{"t_h": 2.0, "duration_s": 700.0}], "zero_below_mps": 0.5}
     scenario = scenario_of(CLASSIC2, motion=motion, reference=log)
     found = worst(scenario, 1.0)
-    np.testing.assert_allclose(
-        played(scenario, found, tmp_path)["classic2"], found.methods[0].largest, rtol=1e-3
-    )
+    np.testing.assert_allclose(played(found, tmp_path)["classic2"], found.methods[0].largest, rtol=1e-3)
 
 
 def test_the_full_mechanization_shows_it_within_one_percent(tmp_path: Path) -> None:
     scenario = scenario_of(CLASSIC2, run={"fidelity": "strapdown", "duration_h": 2.0, "rate_hz": 10.0})
     found = worst(scenario, 1.0)
-    np.testing.assert_allclose(
-        played(scenario, found, tmp_path)["classic2"], found.methods[0].largest, rtol=1e-2
-    )
+    np.testing.assert_allclose(played(found, tmp_path)["classic2"], found.methods[0].largest, rtol=1e-2)
 
 
 def test_no_random_log_is_worse_than_an_exact_bound() -> None:
@@ -125,7 +125,7 @@ def test_a_policy_is_searched_and_shows_what_was_found(tmp_path: Path) -> None:
     found = worst(scenario, 1.0)
     assert [one.bound for one in found.methods] == ["exact", "found", "exact"]
     assert not found.methods[0].largest.any()
-    shown = played(scenario, found, tmp_path)
+    shown = played(found, tmp_path)
     np.testing.assert_allclose(shown["threshold"], found.methods[1].largest, rtol=1e-9)
     # as long as it is within the limit the law is the linear one: a smaller log must do at least as much
     within = worst(scenario, 0.4 / math.sqrt(2.0)).methods[2].largest
@@ -144,7 +144,7 @@ def test_a_loop_that_grows_beyond_the_model_has_no_bound() -> None:
     scenario = scenario_of(fast, run={"duration_h": 24.0}, reference={"rate_hz": 0.002})
     found = worst(scenario, 1.0)
     assert found.failed and found.document()["methods"][0]["tilt_rad"] == [None, None]
-    assert [*files_of(scenario, found)] == []
+    assert [*files_of(found)] == []
 
 
 def test_levels_are_reached_within_the_rate() -> None:
@@ -204,3 +204,17 @@ def test_a_limit_can_be_on_the_worst_case_and_tune_makes_it_small() -> None:
     pole2 = scenario_of({**CLASSIC2, "network": {"id": "complementary", "zeta": 0.5, "eta": 0.5}})
     found = tune(pole2, "worst_tilt", ["method.0.network.zeta=0.2:1"], confirm=False)
     assert found.document()["objective"] < 0.999 * found.document()["before"]
+
+
+def test_a_page_plays_the_log_of_an_answer_and_undoes_it(tmp_path: Path) -> None:
+    scenario = scenario_of(CLASSIC2, {"name": "free"}, run={"duration_h": 1.0})
+    found = worst(scenario, 1.0)
+    assert found.plays()[:2] == ("classic2: tilt φE", "classic2: tilt φN") and len(found.plays()) == 7
+    with closing(Session("a" * 22, scenario, "zha-fast", tmp_path)) as session:
+        opening = Opening(SimpleNamespace(), session, lambda: None)  # pyright: ignore[reportArgumentType]
+        opening.play(found.played(3), found.plays()[3])
+        assert session.wait_idle(60.0) and session.run is not None
+        (method,) = session.run.methods
+        assert session.scenario.reference.kind == "file" and method.method.name == "classic2"
+        assert method.errors["dve_mps"]["max_abs"] == pytest.approx(found.methods[0].largest[3], rel=1e-3)
+        assert session.undo() and session.scenario == scenario

@@ -19,6 +19,7 @@ from schuler_bench.shell.searching import SearchControls, reveal, show_html
 from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
 
 QUESTION, ASK, STOP = Text("question"), Text("Ask"), Text("Stop")
+SHOWN, PLAY = Text("shown by a scenario"), Text("Play it")
 _OLD = Text("Of an earlier scenario: ask again.")
 _SPACE = 40.0
 """Between the places of two forms in the tab."""
@@ -123,6 +124,10 @@ class _Panel:
             )
             self._words: Any = gui.add_html("", visible=False, order=order + _SPACE - 4.0)
             self._answer: Any = gui.add_html("", visible=False, order=order + _SPACE - 3.0)
+            hint = Text("Open the scenario in which what is chosen can be seen; undo brings this one back.")
+            self._plays: Any = gui.add_dropdown(SHOWN, ("",), visible=False, order=order + _SPACE - 2.0)
+            self._play: Any = gui.add_button(PLAY, hint=hint, visible=False, order=order + _SPACE - 1.0)
+        self._play.on_click(if_user(self._open))
 
     def show(self, *, chosen: bool) -> None:
         """Show the form, and how far the question is; nothing where another one is chosen."""
@@ -134,11 +139,21 @@ class _Panel:
         old = asked is not None and asked.load != self._session.scenario
         words = [*self._asker.words, *([_OLD] if old else [])]
         show_html(self._words, notices.note(words, "warning") if chosen else "")
+        plays = self._asker.result.plays() if chosen and self._asker.result is not None else ()
+        if plays and tuple(self._plays.options) != plays:
+            self._plays.options = plays
+        reveal((self._plays, bool(plays)), (self._play, bool(plays)))
 
     def answer(self, html: str) -> None:
         """Show the answer."""
         text = Text('<div class="sb-wide sb-table">{html}</div>', html=html) if html else ""
         show_html(self._answer, text)
+
+    def _open(self) -> None:
+        """Play what is chosen of the answer."""
+        answer, what = self._asker.result, str(self._plays.value)
+        if answer is not None and what in (plays := answer.plays()):
+            self._frame.opening.play(answer.played(plays.index(what)), what)
 
     def begin(self) -> None:
         """Ask the question."""

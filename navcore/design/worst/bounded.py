@@ -73,7 +73,7 @@ def worst(
         else:
             methods.append(_exact(ship, method, log_max, log_rate))
         report(1.0)
-    return Worst(log_max, log_rate, scenario.run.duration_h, methods, stopped=stop())
+    return Worst(log_max, log_rate, scenario.run.duration_h, methods, scenario, stopped=stop())
 
 
 def _exact(ship: Ship, method: Method, log_max: float, log_rate: float | None) -> MethodWorst:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from navcore.design.worst.logs import LogError
 from navcore.foundation.answers import Answer, Column, Table
 from navcore.foundation.text import Text
 from navcore.quantities import COMPONENTS, ERRORS, KINDS, POSITION, components
+
+if TYPE_CHECKING:
+    from navcore.scenario.model import Scenario
 
 Bound = Literal["exact", "found"]
 _KNOWN: dict[Bound, str] = {"exact": Text("exact"), "found": Text("found, not proven")}
@@ -80,6 +83,8 @@ class Worst(Answer):
         Length of the run, h.
     methods : tuple of MethodWorst
         In the scenario's order.
+    scenario : Scenario
+        That was asked about.
     stopped : bool
         It was stopped: a search has looked at fewer logs, or methods are missing.
     """
@@ -88,6 +93,7 @@ class Worst(Answer):
     log_rate: float | None
     horizon_h: float
     methods: Sequence[MethodWorst]
+    scenario: Scenario
     stopped: bool = False
 
     @property
@@ -109,6 +115,26 @@ class Worst(Answer):
             "horizon_h": self.horizon_h,
             "methods": [one.document() for one in self.methods],
         }
+
+    def plays(self) -> tuple[str, ...]:
+        """Name each error of each method whose worst log a scenario can play."""
+        return tuple(
+            Text("{method}: {error}", method=self.methods[place].name, error=ERRORS[k].label)
+            for place, k in self.playable
+        )
+
+    def played(self, place: int) -> dict[str, str]:
+        """Return the log and the scenario that plays it."""
+        from navcore.design.worst.written import files_of
+
+        (method, k) = self.playable[place]
+        return dict(files_of(self, [(method, k)]))
+
+    @property
+    def playable(self) -> list[tuple[int, int]]:
+        """Place of the method and of the error of each log."""
+        kept = (place for place, one in enumerate(self.methods) if one.playable and not one.diverged)
+        return [(place, k) for place in kept for k in range(len(COMPONENTS))]
 
     def rows(self) -> Iterator[Table | str]:
         """Give a row a method."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from navcore.design.ship import Ship
 from navcore.design.worst.played import log_file, playing, silent
 from navcore.design.worst.result import FILE_KEYS, Worst
 from navcore.engine.environment import start_utc
-from navcore.quantities import COMPONENTS, ERRORS
+from navcore.quantities import ERRORS
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario
 
@@ -29,22 +29,20 @@ def names_of(scenario: Scenario) -> list[str]:
     ]
 
 
-def files_of(scenario: Scenario, answer: Worst) -> Iterator[tuple[str, str]]:
-    """Name and text of each file; none of a method that does not read the log, or that diverges.
+def files_of(answer: Worst, places: Iterable[tuple[int, int]] | None = None) -> Iterator[tuple[str, str]]:
+    """Name and text of each file, first a log and then the scenario that plays it.
 
     Parameters
     ----------
-    scenario : Scenario
-        That was asked about.
     answer : Worst
-        Of it.
+        Of the question.
+    places : iterable of (int, int), optional
+        Which method and which error; by default all that can be played.
     """
-    quiet = silent(scenario)
-    truth, begin = Ship(quiet).course.truth, start_utc(quiet) or 0.0
-    for stem, method, found in zip(_stems(scenario), quiet.method, answer.methods, strict=False):
-        if not found.playable or found.diverged:
-            continue
-        for key, error, log in zip(FILE_KEYS, ERRORS[: len(COMPONENTS)], found.logs, strict=True):
-            name = f"{stem}-{key}.csv"
-            yield name, log_file(quiet, truth, log, begin)
-            yield f"{stem}-{key}.toml", to_toml(playing(quiet, truth, method, name, error.label))
+    quiet = silent(answer.scenario)
+    truth, begin, stems = Ship(quiet).course.truth, start_utc(quiet) or 0.0, _stems(quiet)
+    for place, k in answer.playable if places is None else places:
+        method, log = quiet.method[place], answer.methods[place].logs[k]
+        name = f"{stems[place]}-{FILE_KEYS[k]}"
+        yield f"{name}.csv", log_file(quiet, truth, log, begin)
+        yield f"{name}.toml", to_toml(playing(quiet, truth, method, f"{name}.csv", ERRORS[k].label))
