@@ -284,7 +284,7 @@ def _vector(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSp
     return [
         FieldSpec(
             (*path, i), full_label(name, info, prefix, part), hint, "number", info.default[i], (),
-            _slider(info), allowed,
+            _slider(info, i), allowed,
         )
         for i, part in enumerate(names)
     ]  # fmt: skip
@@ -317,11 +317,13 @@ def _hint(info: FieldInfo, allowed: str) -> str:
     return Text.joined(" ", (part for part in (text, bounds) if part))
 
 
-def _slider(info: FieldInfo) -> Slider | None:
+def _slider(info: FieldInfo, element: int = 0) -> Slider | None:
     extra = extra_of(info)
     ends = extra.get("slider")
     if not ends:
         return None
+    if not isinstance(ends[0], int | float):
+        ends = ends[element]
     whole = _without_none(info.annotation) is int
     return Slider(float(ends[0]), float(ends[1]), bool(extra.get("log")), whole)
 

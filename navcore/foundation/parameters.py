@@ -147,7 +147,7 @@ def vector_quantity(
     elements: tuple[str, ...] = ("x", "y", "z"),
     label: str = "",
     help: str = "",
-    slider: tuple[float, float] | None = None,
+    slider: tuple[float, float] | tuple[tuple[float, float], ...] | None = None,
     log: bool = False,
 ) -> Any:
     """Declare a vector field of fixed length; its elements carry their bounds (`bounded`).
@@ -157,7 +157,7 @@ def vector_quantity(
     default : tuple of float
         Default values.
     unit, label, help, slider, log
-        As of `quantity`; the slider is that of each element.
+        As of `quantity`; the slider is that of each element, or there is one for each.
     elements : tuple of str
         Name of each element on the page.
 

@@ -62,6 +62,7 @@ class MethodView(View):
         gui, edit = self.frame.gui, self.frame.editor.edit
         with tab:
             self._chips = gui.add_html("", order=0)
+            self._by_policy = gui.add_html("", order=20, visible=False)
             self._loop = gui.add_html("", order=40, visible=False)
             self._warnings = gui.add_html("", order=41, visible=False)
             self._unused = gui.add_html("", order=42, visible=False)
@@ -149,12 +150,15 @@ class MethodView(View):
         of_method = [spec for spec in form.fields(Method, path) if spec.path[-1] != "name"]
         self.sections["method"].show(of_method, values, moved)
         blocks = method.kind.blocks
-        network = [described(spec, method) for spec in form.fields(type(method.network), (*path, "network"))]
+        network = form.fields(type(method.network), (*path, "network"))
+        by_policy = [spec for spec in network if set_by_policy(spec, method)]
         self.sections["network"].show(
             [_catalogue("network", path)] if "network" in blocks else [], values, moved
         )
         unset = {(*path, "network", name): _TAKEN for name in method.network.taken()}
-        self.sections["parameters"].show(network if "network" in blocks else [], values, moved, unset)
+        shown = [spec for spec in network if "network" in blocks and spec not in by_policy]
+        self.sections["parameters"].show(shown, values, moved, unset)
+        show_html(self._by_policy, by_policy_html(by_policy, method, values))
         for part in ("policy", "switching"):
             specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
             self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
@@ -188,11 +192,23 @@ class MethodView(View):
         show_html(self._unused, unused)
 
 
-def described(spec: FieldSpec, method: Method) -> FieldSpec:
-    """Description of a network's parameter; where the policy sets it, that says so first."""
-    reason = "" if method.undamped else network_not_in_force(method, f"network.{spec.path[-1]}")
-    hint = Text("This value does not act: {reason}. {hint}", reason=reason, hint=spec.hint)
-    return replace(spec, hint=hint) if reason else spec
+def set_by_policy(spec: FieldSpec, method: Method) -> str:
+    """Why a network's parameter has no control: the policy sets it; "" where it acts."""
+    return "" if method.undamped else network_not_in_force(method, f"network.{spec.path[-1]}")
+
+
+def by_policy_html(set_by: list[FieldSpec], method: Method, values: Mapping[Path, Any]) -> str:
+    """Parameters of a network that the policy sets, with the values that the network itself has."""
+    if not set_by:
+        return ""
+    own = [
+        Text("{label} {value:.4g}", label=spec.label, value=value)
+        for spec in set_by
+        if isinstance(value := values.get(spec.path), int | float)
+    ]
+    sets = Text("{reason:sentence}", reason=network_not_in_force(method))
+    without = [Text("Without it: {own}.", own=Text.joined(", ", own))] if own else []
+    return notices.small(Text.joined(" ", [sets, *without]))
 
 
 def own_fields(kind: Damping, path: Path) -> list[FieldSpec]:

@@ -24,7 +24,15 @@ _LARGEST_K1 = 10.0
 
 
 def _gains(default: tuple[float, float, float], label: str, help: str) -> Any:
-    return vector_quantity(default, elements=("K₁ (1/s)", "K₂", "K₃ (1/s)"), label=label, help=help)
+    """Gains in the ranges of the sliders of `compass`."""
+    return vector_quantity(
+        default,
+        elements=("K₁ (1/s)", "K₂", "K₃ (1/s)"),
+        label=label,
+        help=help,
+        slider=((1e-3, 0.5), (1.0, 5e4), (1e-3, 1e3)),
+        log=True,
+    )
 
 
 # `from` cannot be written as a class attribute, but it is the name of the field (scenario.md).
