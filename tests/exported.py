@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from navcore.exporting.c import CPrinter
-from navcore.exporting.forms import WHOLE, Form
+from navcore.exporting.form import WHOLE, Form
 from navcore.exporting.replay import INPUTS
 from navcore.exporting.step import NO_SAMPLE, NOT_YET, SAMPLE
 from navcore.exporting.target_c import sources

@@ -9,7 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from navcore.exporting import target_c
-from navcore.exporting.forms import Form, form_of
+from navcore.exporting.form import Form
+from navcore.exporting.forms import form_of
 from navcore.exporting.names import require_prefix
 from navcore.exporting.subject import Subject, subject_of
 from navcore.foundation.answers import Answer, Column, Table

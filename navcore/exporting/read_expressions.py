@@ -61,6 +61,27 @@ class ExpressionReader(StateReader):
     def _tuple(self, node: ast.Tuple) -> Value:
         return Group(tuple(self._value(one) for one in node.elts))
 
+    def _list(self, node: ast.List) -> Value:
+        return Group(tuple(self._value(one) for one in node.elts))
+
+    def _listcomp(self, node: ast.ListComp) -> Value:
+        """A group made of another: its elements are known one by one."""
+        (loop,) = node.generators
+        group, names = self._value(loop.iter), self._frames[-1].names
+        if not isinstance(group, Group) or loop.ifs or not isinstance(loop.target, ast.Name):
+            raise NotWrittenError(ast.unparse(node))
+        found = []
+        for item in group.items:
+            names[loop.target.id] = item
+            found.append(self._value(node.elt))
+        return Group(tuple(found))
+
+    def _slice(self, node: ast.Slice) -> Value:
+        ends = [None if one is None else self._number(one) for one in (node.lower, node.upper)]
+        if node.step is not None or not all(one is None or isinstance(one, Num) for one in ends):
+            raise NotWrittenError(ast.unparse(node))
+        return Known(slice(*(None if one is None else int(one.value) for one in ends)))  # pyright: ignore[reportAttributeAccessIssue]
+
     def _attribute(self, node: ast.Attribute) -> Value:
         return self._member(self._value(node.value), node.attr)
 
@@ -93,6 +114,8 @@ class ExpressionReader(StateReader):
             (place,) = indices
             if isinstance(place, Num):
                 return value.items[int(place.value)]
+            if isinstance(place, Known) and isinstance(place.value, slice):
+                return Group(value.items[place.value])
             raise NotWrittenError(ast.unparse(node))
         numbers = tuple(one for one in indices if isinstance(one, NUMBERS))
         if isinstance(value, Named):

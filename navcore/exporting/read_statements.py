@@ -264,7 +264,10 @@ class StatementReader(ExpressionReader):
         return block
 
     def _items(self, node: ast.expr) -> list[Value] | None:
-        """Values of a loop over a tuple; None of one over a range."""
-        if isinstance(node, ast.Tuple | ast.List):
-            return [self._value(one) for one in node.elts]
-        return None
+        """Values of a loop over a group; None of one over a range."""
+        if isinstance(node, ast.Call):
+            return None
+        group = self._value(node)
+        if not isinstance(group, Group):
+            raise NotWrittenError(ast.unparse(node))
+        return list(group.items)

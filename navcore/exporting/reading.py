@@ -114,7 +114,7 @@ class Reader(StatementReader):
             items = (self._parameter(f, item, params) for f, item in zip(fields, value.items, strict=True))
             return Group(tuple(items), value.kind)
         if isinstance(value, NUMBERS) and not isinstance(value, Num):
-            params.append(Var(self._fresh(name), value.kind))
+            params.append(Var(self._fresh(value.name if isinstance(value, Var) else name), value.kind))
             return params[-1]
         return value
 

@@ -16,3 +16,20 @@ LOG_STATE = record_type(
     last=(REAL, (2,)),  # the last sample, m/s
 )
 """State of the reading of the log."""
+MOTION = record_type(
+    step=REAL,  # time between two calls, s
+    e2=REAL,  # square of the eccentricity of the Earth's ellipsoid
+    g_equator=REAL,  # normal gravity at the equator, m/s^2
+    k_gravity=REAL,  # Somigliana's constant
+    height=REAL,  # height above the ellipsoid, m
+    pitch=REAL,  # of the sensors' axes, rad
+    roll=REAL,  # of the sensors' axes, rad
+)
+"""Parameters of a filter's motion."""
+MOTION_STATE = record_type(
+    started=FLAG,  # there was a call before
+    lat=REAL,  # latitude at the last call, rad
+    velocity=(REAL, (2,)),  # at the last call, E and N, m/s
+    acceleration=(REAL, (2,)),  # at the last call, E and N, m/s^2
+)
+"""State of a filter's motion."""

@@ -8,7 +8,7 @@ from string import Template
 import numpy as np
 
 from navcore.exporting.c import CPrinter
-from navcore.exporting.forms import ABOUT, WHOLE, Form, unit_of
+from navcore.exporting.form import ABOUT, WHOLE, Form, unit_of
 from navcore.exporting.printing import wrapped
 from navcore.foundation.assets import asset_path
 from navcore.foundation.version import __version__
@@ -88,8 +88,8 @@ def _values(form: Form, prefix: str, printer: CPrinter, bound: float) -> dict[st
         "start_fields": _fields(
             ("lat_rad", "v_e_mps", "v_n_mps"), real, {"lat_rad": "latitude at the start"}
         ),
-        "in_fields": _fields(form.inputs, real),
-        "out_fields": _fields(form.outputs, real),
+        "in_fields": _fields(form.inputs, real, form.notes),
+        "out_fields": _fields(form.outputs, real, form.notes),
         "state_fields": printer.state_fields(),
         "sources": _sources(form),
         "constants": printer.constants(),

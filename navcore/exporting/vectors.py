@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from navcore.engine.drivers.common import seen_by
+from navcore.engine.drivers.kalman import filtered_linear
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
 from navcore.exporting.replay import INPUTS
@@ -12,6 +13,7 @@ from navcore.exporting.step import NO_SAMPLE, NOT_YET, SAMPLE
 from navcore.exporting.subject import Subject
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.mechanization.error_model import STATES
 from navcore.motion.truth import AE, AN, HEADING, HEIGHT, LAT, VE, VN
 from navcore.quantities import COMPONENTS
 from navcore.sensors.base import ReferenceErrors
@@ -35,10 +37,12 @@ def inputs_along(subject: Subject) -> np.ndarray:
         allowed = Text("diverges within {calls} calls: there is nothing to replay", calls=calls)
         raise InputError(Fault("", "--method", subject.method.label(), allowed))
     truth = np.broadcast_to(run.truth, (len(run.t_s), run.truth.shape[1]))[:calls]
-    errors = {name: method.rows[:, place] for place, name in enumerate(COMPONENTS)}
+    errors = {name: method.rows[:, place].copy() for place, name in enumerate(COMPONENTS)}
     inputs = np.zeros((calls, len(INPUTS)))
     column = {name: inputs[:, place] for place, name in enumerate(INPUTS)}
     meridian = np.array([scenario.earth.radii(lat)[0] for lat in truth[:, LAT]]) + truth[:, HEIGHT]
+    if subject.method.kind.carrying == "filter" and not scenario.strapdown:
+        _before_corrections(subject, errors, truth[:, LAT], meridian)
     column["v_e_mps"][:] = truth[:, VE] + errors["dve_mps"]
     column["v_n_mps"][:] = truth[:, VN] + errors["dvn_mps"]
     column["lat_rad"][:] = truth[:, LAT] + errors["dlat_m"] / meridian
@@ -48,6 +52,40 @@ def inputs_along(subject: Subject) -> np.ndarray:
         log = _log_along(subject, method.t_s, truth, errors["phi_u_rad"])
         column["log_e_mps"][:], column["log_n_mps"][:], column["log_valid"][:] = log
     return inputs
+
+
+def corrections_of(subject: Subject) -> np.ndarray:
+    """What a Kalman filter takes off the seven errors at each step of the run, shape (calls, 7), SI."""
+    scenario = subject.scenario
+    env, state = environment(scenario), np.array(scenario.initial_error.state())
+    run, _ = filtered_linear(scenario, subject.method, env, state)
+    found, epoch = np.zeros((env.steps + 1, STATES)), -1
+    for off in found:
+        run.advance(1)
+        if run.law.s["epoch"] != epoch and run.law.s["valid"]:
+            off[:] = run.filter.errors[:STATES]
+        epoch = int(run.law.s["epoch"])
+    return found
+
+
+def _before_corrections(
+    subject: Subject, errors: dict[str, np.ndarray], lat: np.ndarray, meridian: np.ndarray
+) -> None:
+    """Put back what a filter has corrected: the run records what is left, an exported filter is given what was.
+
+    Parameters
+    ----------
+    subject : Subject
+        The method.
+    errors : dict of ndarray
+        Recorded errors by name; changed.
+    lat, meridian : ndarray, shape (calls,)
+        True latitude, rad, and radius, m.
+    """
+    off = corrections_of(subject)[: len(lat)]
+    for place, name in ((0, "dve_mps"), (1, "dvn_mps"), (4, "phi_e_rad"), (5, "phi_n_rad"), (6, "phi_u_rad")):
+        errors[name] += off[:, place]
+    errors["dlat_m"] += off[:, 2] * meridian
 
 
 def reference_of(subject: Subject) -> ReferenceErrors:

@@ -9,7 +9,8 @@ import pytest
 
 from navcore.engine.drivers.common import law_of, network_of, seen_by
 from navcore.engine.environment import environment
-from navcore.exporting.forms import Form, law_form
+from navcore.exporting.form import Form
+from navcore.exporting.law_form import law_form
 from navcore.exporting.replay import INPUTS
 from navcore.exporting.step import NO_SAMPLE, NOT_YET, SAMPLE
 from navcore.exporting.subject import Subject, subject_of
