@@ -48,11 +48,24 @@ def averaging_form(subject: Subject) -> Form:
     expected = _expected(copies, level, slow)
     inputs = (*Given._fields, *names)
     notes = {
-        f"copy{i}_{name}": f"of the copy that runs {ahead:.0f} s ahead" if i else "of the main navigation"
+        f"copy{i}_{name}": f"of the copy {ahead:.0f} s ahead" if i else "of the main navigation"
         for i, ahead in enumerate(plan.copies.ahead_s)
         for name in Copy._fields
     }
-    return Form(subject, program, inputs, Averages._fields, given, expected, 0.0, notes)
+    return Form(
+        subject, program, inputs, Averages._fields, given, expected, 0.0, notes, _usage(plan.copies.ahead_s)
+    )
+
+
+def _usage(ahead_s: tuple[float, ...]) -> tuple[str, ...]:
+    """What the copies are."""
+    return (
+        "Several copies of the navigation run undamped. Each begins from the state after alignment; before",
+        "navigation starts, copy i runs ahead on the forecast of the sensors for the time below, so that its",
+        "oscillations stand half a period further. In each call give the outputs of all copies; give out the",
+        "means.",
+        *(f"copy {i}: {ahead:.3f} s ahead" for i, ahead in enumerate(ahead_s)),
+    )
 
 
 def _copies(scenario: Scenario, subject: Subject, env: Any, plan: Any) -> list[Copy]:

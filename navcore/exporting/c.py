@@ -7,35 +7,14 @@ import re
 
 import numpy as np
 
-from navcore.exporting.ir import (
-    COMPARISONS,
-    Call,
-    Const,
-    Expr,
-    Field,
-    For,
-    Function,
-    If,
-    Item,
-    Kind,
-    Let,
-    Num,
-    Op,
-    Program,
-    Return,
-    Statement,
-    Store,
-    Var,
-    While,
-)
-from navcore.exporting.printing import right_needs_more, strength, touched, wrapped
+from navcore.exporting.ir import Call, Expr, For, Function, Kind, Let, Op, Program, Return, While
+from navcore.exporting.printing import INDENT, Printer, wrapped
 
 _TYPES: dict[Kind, str] = {"int": "int64_t", "bool": "int"}
-_SIGNS = {"and": "&&", "or": "||", **{one: one for one in (*COMPARISONS, "+", "-", "*", "/")}}
-_INDENT = "    "
+_NAMES = {"min": "fmin", "max": "fmax", "abs": "fabs"}
 
 
-class CPrinter:
+class CPrinter(Printer):
     """Prints a program.
 
     Parameters
@@ -48,12 +27,12 @@ class CPrinter:
         Numbers are float in place of double.
     """
 
-    def __init__(self, program: Program, prefix: str, single: bool = False) -> None:
-        self.program, self.prefix, self.single = program, prefix, single
-        self.real = "float" if single else "double"
-        self._needs = touched(program)
+    signs = {"and": "&&", "or": "||", "not": "!"}
 
-    # ------------------------------------------------------------ numbers
+    def __init__(self, program: Program, prefix: str, single: bool = False) -> None:
+        super().__init__(program)
+        self.prefix, self.single = prefix, single
+        self.real = "float" if single else "double"
 
     def number(self, value: float) -> str:
         """A number as a literal of the target's type."""
@@ -63,129 +42,94 @@ class CPrinter:
         text = text if re.search(r"[.e]", text) else f"{text}.0"
         return f"{text}f" if self.single else text
 
+    def whole(self, value: float | int | bool, truth: bool) -> str:
+        """A whole number; 1 is true."""
+        return str(int(value))
+
+    def element(self, name: str, index: tuple[Expr, ...]) -> str:
+        """An element of an array."""
+        return name + "".join(f"[{self.expression(one)}]" for one in index)
+
+    def of_state(self, name: str) -> str:
+        """A place in the state."""
+        return f"s->{name}"
+
+    def chosen(self, condition: str, then: str, otherwise: str) -> str:
+        """One of two values."""
+        return f"{condition} ? {then} : {otherwise}"
+
+    def function(self, op: str, args: list[str], expr: Op) -> str:
+        """A function of mathematics, or a conversion."""
+        if op in ("real", "int"):
+            return f"({self.type_of(expr.kind)}){self.bracketed(expr.args[0])}"
+        if expr.kind == "int":
+            first, *others = (self.bracketed(one) for one in expr.args)
+            if op == "abs":
+                return f"({first} < 0 ? -{first} : {first})"
+            return f"({first} {'<' if op == 'min' else '>'} {others[0]} ? {first} : {others[0]})"
+        if op == "isfinite":
+            return f"isfinite({args[0]})"
+        return f"{_NAMES.get(op, op)}{'f' if self.single else ''}({', '.join(args)})"
+
     def type_of(self, kind: Kind) -> str:
         """Type of a variable."""
         return _TYPES.get(kind, self.real)
 
-    # ------------------------------------------------------------ expressions
-
-    def expression(self, expr: Expr) -> str:
-        """An expression."""
-        if isinstance(expr, Num):
-            return self.number(expr.value) if expr.kind == "real" else str(int(expr.value))
-        if isinstance(expr, Var | Const):
-            return expr.name
-        if isinstance(expr, Field | Item):
-            name = f"s->{expr.name}" if isinstance(expr, Field) else expr.table
-            return name + "".join(f"[{self.expression(one)}]" for one in expr.index)
-        return self._operation(expr)
-
-    def _operation(self, expr: Op) -> str:
-        op, args = expr.op, expr.args
-        if op in _SIGNS:
-            return f" {_SIGNS[op]} ".join(
-                self._inner(one, expr, i > 0 and right_needs_more(op)) for i, one in enumerate(args)
-            )
-        if op == "if":
-            condition, then, otherwise = (self._inner(one, expr, True) for one in args)
-            return f"{condition} ? {then} : {otherwise}"
-        if op in ("neg", "not"):
-            return ("-" if op == "neg" else "!") + self._bracketed(args[0])
-        if op in ("real", "int"):
-            return f"({self.type_of(expr.kind)}){self._bracketed(args[0])}"
-        given = [self.expression(one) for one in args]
-        if expr.kind == "int":
-            return self._of_integers(op, [self._bracketed(one) for one in args])
-        if op == "isfinite":
-            return f"isfinite({given[0]})"
-        name = {"min": "fmin", "max": "fmax", "abs": "fabs"}.get(op, op)
-        return f"{name}{'f' if self.single else ''}({', '.join(given)})"
-
-    def _of_integers(self, op: str, args: list[str]) -> str:
-        if op == "abs":
-            return f"({args[0]} < 0 ? -{args[0]} : {args[0]})"
-        sign = "<" if op == "min" else ">"
-        return f"({args[0]} {sign} {args[1]} ? {args[0]} : {args[1]})"
-
-    def _inner(self, expr: Expr, outer: Op, equal_too: bool) -> str:
-        mine, its = strength(expr), strength(outer)
-        mixed = isinstance(expr, Op) and {expr.op, outer.op} == {"and", "or"}
-        text = self.expression(expr)
-        return f"({text})" if mine < its or (equal_too and mine == its) or mixed else text
-
-    def _bracketed(self, expr: Expr) -> str:
-        text = self.expression(expr)
-        return f"({text})" if isinstance(expr, Op) or (isinstance(expr, Num) and expr.value < 0) else text
-
     # ------------------------------------------------------------ statements
 
-    def block(self, body: list[Statement], depth: int, function: Function) -> list[str]:
-        """Lines of a block."""
-        return [line for one in body for line in self._statement(one, depth, function)]
+    def assigned(self, one: Let) -> str:
+        """A variable gets a value."""
+        kind = f"{'const ' if one.var.fixed else ''}{self.type_of(one.var.kind)} " if one.declare else ""
+        return f"{kind}{one.var.name} = {self.expression(one.value)};"
 
-    def _statement(self, one: Statement, depth: int, function: Function) -> list[str]:
-        pad = _INDENT * depth
-        if isinstance(one, Let):
-            kind = f"{'const ' if one.var.fixed else ''}{self.type_of(one.var.kind)} " if one.declare else ""
-            return [f"{pad}{kind}{one.var.name} = {self.expression(one.value)};"]
-        if isinstance(one, Store):
-            return [f"{pad}{self.expression(one.place)} = {self.expression(one.value)};"]
-        if isinstance(one, If):
-            return self._if(one, depth, function)
-        if isinstance(one, For):
-            sign, move = ("<", "++") if one.step > 0 else (">", "--")
-            name = one.var.name
-            head = (
-                f"for (int64_t {name} = {self.expression(one.start)}; "
-                f"{name} {sign} {self.expression(one.stop)}; {name}{move})"
-            )
-            return [f"{pad}{head} {{", *self.block(one.body, depth + 1, function), f"{pad}}}"]
+    def stored(self, place: str, value: str) -> str:
+        """A place gets a value."""
+        return f"{place} = {value};"
+
+    def branches(self, condition: str, then: list[str], otherwise: list[str], pad: str) -> list[str]:
+        """One of two blocks."""
+        middle = [f"{pad}}} else {{", *otherwise] if otherwise else []
+        return [f"{pad}if ({condition}) {{", *then, *middle, f"{pad}}}"]
+
+    def head(self, one: For | While) -> str:
+        """Head of a loop."""
         if isinstance(one, While):
-            head = f"{pad}while ({self.expression(one.condition)}) {{"
-            return [head, *self.block(one.body, depth + 1, function), f"{pad}}}"]
-        if isinstance(one, Call):
-            return self._call(one, pad)
-        return self._return(one, pad, function)
+            return f"while ({self.expression(one.condition)}) {{"
+        sign, move = ("<", "++") if one.step > 0 else (">", "--")
+        name, start, stop = one.var.name, self.expression(one.start), self.expression(one.stop)
+        return f"for (int64_t {name} = {start}; {name} {sign} {stop}; {name}{move}) {{"
 
-    def _if(self, one: If, depth: int, function: Function) -> list[str]:
-        pad = _INDENT * depth
-        then = self.block(one.then, depth + 1, function)
-        otherwise = self.block(one.otherwise, depth + 1, function)
-        if not then:
-            head = f"{pad}if (!{self._bracketed(one.condition)}) {{"
-            return [head, *otherwise, f"{pad}}}"]
-        lines = [f"{pad}if ({self.expression(one.condition)}) {{", *then]
-        return [*lines, *([f"{pad}}} else {{", *otherwise] if otherwise else []), f"{pad}}}"]
+    def end(self, pad: str) -> list[str]:
+        """What ends a block."""
+        return [f"{pad}}}"]
 
-    def _call(self, one: Call, pad: str) -> list[str]:
+    def call(self, one: Call) -> list[str]:
+        """Lines of a call: one result is returned, several go to where they are wanted."""
         given = ["s"] if self._needs[one.function][0] else []
         given += [self.expression(arg) for arg in one.args]
         if len(one.targets) == 1:
             (target,) = one.targets
             kind = self.type_of(target.kind)
-            return [f"{pad}const {kind} {target.name} = {one.function}({', '.join(given)});"]
-        lines = [f"{pad}{self.type_of(target.kind)} {target.name};" for target in one.targets]
+            return [f"const {kind} {target.name} = {one.function}({', '.join(given)});"]
+        lines = [f"{self.type_of(target.kind)} {target.name};" for target in one.targets]
         given += [f"&{target.name}" for target in one.targets]
-        return [*lines, f"{pad}{one.function}({', '.join(given)});"]
+        return [*lines, f"{one.function}({', '.join(given)});"]
 
-    def _return(self, one: Return, pad: str, function: Function) -> list[str]:
+    def returned(self, one: Return, function: Function) -> list[str]:
+        """Lines with which a function ends."""
         if len(one.values) == 1:
-            return [f"{pad}return {self.expression(one.values[0])};"]
+            return [f"return {self.expression(one.values[0])};"]
         pairs = zip(function.results, one.values, strict=bool(one.values))
-        lines = [f"{pad}*{_result(name)} = {self.expression(value)};" for (name, _), value in pairs]
-        return lines if one is function.body[-1] else [*lines, f"{pad}return;"]
+        lines = [f"*{_result(name)} = {self.expression(value)};" for (name, _), value in pairs]
+        return lines if one is function.body[-1] else [*lines, "return;"]
 
     # ------------------------------------------------------------ parts of a file
-
-    def needs_state(self, function: Function) -> bool:
-        """Whether a function is given the state."""
-        return self._needs[function.name][0]
 
     def signature(self, function: Function) -> str:
         """Head of a function."""
         several = len(function.results) != 1
         kind = "void" if several else self.type_of(function.results[0][1])
-        given = [f"{self.prefix}_state *s"] if self._needs[function.name][0] else []
+        given = [f"{self.prefix}_state *s"] if self.needs_state(function) else []
         given += [f"{self.type_of(one.kind)} {one.name}" for one in function.params]
         if several:
             given += [f"{self.type_of(k)} *{_result(name)}" for name, k in function.results]
@@ -222,8 +166,8 @@ class CPrinter:
         lines = []
         for name, one in self.program.state.items():
             shape = "".join(f"[{n}]" for n in one.shape)
-            lines.append(f"{_INDENT}{self.type_of(one.kind)} {name}{shape};{_beside(one.note)}")
-        return "\n".join(lines or [f"{_INDENT}int nothing; /* this law keeps nothing */"])
+            lines.append(f"{INDENT}{self.type_of(one.kind)} {name}{shape};{_beside(one.note)}")
+        return "\n".join(lines or [f"{INDENT}int nothing; /* this law keeps nothing */"])
 
     def initial_values(self) -> str:
         """Statements that put the state before the first call."""
@@ -233,7 +177,7 @@ class CPrinter:
                 value = one.initial[at]
                 if value != 0:
                     text = self.number(float(value)) if one.kind == "real" else str(int(value))
-                    lines.append(f"{_INDENT}s->{name}{''.join(f'[{i}]' for i in at)} = {text};")
+                    lines.append(f"{INDENT}s->{name}{''.join(f'[{i}]' for i in at)} = {text};")
         return "\n".join(lines)
 
 
@@ -257,10 +201,10 @@ def _folded(head: str) -> str:
     if len(head) <= 100:
         return head
     start, _, given = head.partition("(")
-    lines, line = [], _INDENT
+    lines, line = [], INDENT
     for one in given.rstrip(")").split(", "):
         if len(line) + len(one) > 96:
             lines.append(line.rstrip())
-            line = _INDENT
+            line = INDENT
         line += f"{one}, "
     return f"{start}(\n" + "\n".join([*lines, line.rstrip(", ")]) + ")"

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
-from navcore.exporting import target_c
+from navcore.exporting import target_c, target_fmu, target_matlab, target_python, target_table
 from navcore.exporting.form import Form
 from navcore.exporting.forms import form_of
 from navcore.exporting.names import require_prefix
+from navcore.exporting.rounding import Rounding, rounding_of
 from navcore.exporting.subject import Subject, subject_of
 from navcore.foundation.answers import Answer, Column, Table
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
-Target = Literal["c"]
+Target = Literal["c", "matlab", "python", "table", "fmu"]
 """Targets of an export."""
+
+
+Files = Mapping[str, str | bytes]
+"""Contents of files by name."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +38,12 @@ class Exported(Answer):
         What it was exported as.
     prefix : str
         Of the names in the files.
-    files : dict of str to str
-        Texts by name.
-    bound : float
-        Largest deviation from the vectors, of the peak of each output.
+    files : dict of str to (str or bytes)
+        Contents by name.
+    bounds : tuple of float
+        Largest deviation of each output from the vectors, of its peak.
+    rounding : Rounding or None
+        What single precision does.
     warnings : tuple of str
         What the user should know.
     """
@@ -44,8 +51,9 @@ class Exported(Answer):
     form: Form
     target: str
     prefix: str
-    files: dict[str, str]
-    bound: float
+    files: Files
+    bounds: tuple[float, ...]
+    rounding: Rounding | None = None
     warnings: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
@@ -59,8 +67,9 @@ class Exported(Answer):
             "rate_hz": subject.rate_hz,
             "step_s": subject.step_s,
             "vectors": {"calls": len(self.form.given), "hours": self.hours, "peaks": peaks},
-            "bound": self.bound,
-            "files": {name: len(text.encode()) for name, text in self.files.items()},
+            "bounds": dict(zip(self.form.outputs, self.bounds, strict=True)),
+            "single": None if self.rounding is None else self.rounding.document(),
+            "files": {name: len(_bytes(one)) for name, one in self.files.items()},
             "warnings": list(self.warnings),
         }
 
@@ -73,23 +82,35 @@ class Exported(Answer):
         """Give what was exported, the files, and the warnings."""
         subject = self.form.subject
         yield Text(
-            '"{method}" at {rate:.6g} Hz; vectors of {hours:.4g} h, bound {bound:.3g} of the peaks',
+            '"{method}" at {rate:.6g} Hz; vectors of {hours:.4g} h, to be met within {bound:.3g} of a peak',
             method=subject.method.label(),
             rate=subject.rate_hz,
             hours=self.hours,
-            bound=self.bound,
+            bound=max(self.bounds),
         )
+        if self.rounding is not None:
+            yield from self.rounding.sentences()
         heads = Column(Text("file"), left=True), Column(Text("size"), "kB", 4)
-        rows = [(name, len(text.encode()) / 1000.0) for name, text in self.files.items()]
+        rows = [(name, len(_bytes(one)) / 1000.0) for name, one in self.files.items()]
         yield Table(heads, tuple(rows))
         yield from (Text("warning: {text}", text=text) for text in self.warnings)
+
+
+def _bytes(content: str | bytes) -> bytes:
+    return content.encode() if isinstance(content, str) else content
 
 
 def _peaks(form: Form) -> list[float]:
     return [float(peak) for peak in np.max(np.abs(form.expected), axis=0)]
 
 
-_TARGETS: dict[str, Callable[[Form, str, bool, float], dict[str, str]]] = {"c": target_c.files}
+_TARGETS: dict[str, Callable[[Form, str, bool, Sequence[float]], Files]] = {
+    "c": target_c.files,
+    "matlab": target_matlab.files,
+    "python": target_python.files,
+    "table": target_table.files,
+    "fmu": target_fmu.files,
+}
 """Files of each target."""
 
 
@@ -99,6 +120,7 @@ def exported(
     *,
     target: str = "c",
     rate_hz: float | None = None,
+    single: bool = False,
     prefix: str = "schuler_law",
 ) -> Exported:
     """Export the law of a method.
@@ -109,10 +131,12 @@ def exported(
         Complete and checked.
     method : str
         Name or number of the method; may be empty where there is only one.
-    target : {"c"}
+    target : {"c", "matlab", "python", "table", "fmu"}
         What the files are.
     rate_hz : float, optional
         Calls a second; default that of the scenario's law.
+    single : bool
+        Numbers of single precision; what that does is measured on the vectors.
     prefix : str
         Of the names in the files.
 
@@ -124,9 +148,10 @@ def exported(
     require_prefix(prefix)
     subject = subject_of(scenario, method, rate_hz)
     form = form_of(subject)
-    bound = target_c.BOUND
-    files = _TARGETS[target](form, prefix, False, bound)
-    return Exported(form, target, prefix, files, bound, _warnings(subject))
+    rounding = rounding_of(form) if single else None
+    bounds = target_c.double_bounds(form) if rounding is None else rounding.bounds
+    files = _TARGETS[target](form, prefix, single, bounds)
+    return Exported(form, target, prefix, files, bounds, rounding, _warnings(subject))
 
 
 def _warnings(subject: Subject) -> tuple[str, ...]:

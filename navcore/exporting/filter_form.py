@@ -19,6 +19,14 @@ from navcore.foundation.records import new_record
 from navcore.mechanization.kalman.filter import FilterState, filter_state
 from navcore.motion.truth import PITCH, ROLL
 
+_USAGE = (
+    "In each call give what has just been computed; then take off_... off velocity, position and attitude",
+    "(C_b^n becomes (I + [off_phi x]) C_b^n) before the navigation goes on. Until the next call",
+    "- form the transport rate with v_star: omega_E = -v_star_n/(M + h), omega_N = v_star_e/(N + h);",
+    "- add feedback_e, feedback_n to the rate of the velocity, and azimuth_rate to the rate about up:",
+    "  they hold what the filter knows of the errors of gyros and accelerometers.",
+    "The sensors' axes are those of the ship, tilted by pitch and roll at the start of the scenario.",
+)
 _KEPT = ("P", "sensors", "turn", "moved", "inputs", "scratch", "errors")
 """Arrays of a filter's state that an exported one has too."""
 
@@ -54,4 +62,4 @@ def filter_form(subject: Subject, given: np.ndarray | None = None) -> Form:
     ]
     program = read_program(filter_step, roots, arguments)
     expected = replayed_filter(Motion(parameters, memory), model, state, given)
-    return Form(subject, program, INPUTS, FILTER_OUTPUTS, given, expected, 0.0)
+    return Form(subject, program, INPUTS, FILTER_OUTPUTS, given, expected, 0.0, usage=_USAGE)

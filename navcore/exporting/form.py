@@ -42,6 +42,15 @@ ABOUT = {
 """What inputs and outputs are."""
 
 
+USAGE = (
+    "In each call give what has just been computed; until the next call",
+    "- form the transport rate with v_star: omega_E = -v_star_n/(M + h), omega_N = v_star_e/(N + h);",
+    "- add feedback_e, feedback_n to the rate of the velocity, and azimuth_rate to the rate about up;",
+    "- leave position and the velocity that is given out as they are computed.",
+)
+"""What is to be done with the outputs of a law."""
+
+
 @dataclass(frozen=True)
 class Form:
     """A method, ready for a target.
@@ -62,6 +71,8 @@ class Form:
         Time for which a sample of the log counts, s; 0 where the law reads none.
     notes : dict of str to str
         What inputs and outputs of its own are.
+    usage : tuple of str
+        What is to be done in each call.
     """
 
     subject: Subject
@@ -72,6 +83,7 @@ class Form:
     expected: np.ndarray
     hold_s: float
     notes: dict[str, str] = field(default_factory=dict)
+    usage: tuple[str, ...] = USAGE
 
     @property
     def start(self) -> tuple[float, float, float]:

@@ -71,7 +71,7 @@ def corrections_of(subject: Subject) -> np.ndarray:
 def _before_corrections(
     subject: Subject, errors: dict[str, np.ndarray], lat: np.ndarray, meridian: np.ndarray
 ) -> None:
-    """Put back what a filter has corrected: the run records what is left, an exported filter is given what was.
+    """Put back what a filter has corrected: a run records what is left, an exported filter is given all.
 
     Parameters
     ----------
@@ -83,7 +83,8 @@ def _before_corrections(
         True latitude, rad, and radius, m.
     """
     off = corrections_of(subject)[: len(lat)]
-    for place, name in ((0, "dve_mps"), (1, "dvn_mps"), (4, "phi_e_rad"), (5, "phi_n_rad"), (6, "phi_u_rad")):
+    places = {"dve_mps": 0, "dvn_mps": 1, "phi_e_rad": 4, "phi_n_rad": 5, "phi_u_rad": 6}
+    for name, place in places.items():
         errors[name] += off[:, place]
     errors["dlat_m"] += off[:, 2] * meridian
 

@@ -1,6 +1,6 @@
 """Export: the law of a method as files for a navigation computer."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -37,7 +37,9 @@ class ExportQuestion(Question):
         metavar="NAME|N",
         help=Text("Name of the method, or its number from 0; may be left out where there is only one."),
     )
-    as_: Literal["c"] = option("c", label=Text("as"), help=Text("What the files are."))
+    as_: Literal["c", "matlab", "python", "table", "fmu"] = option(
+        "c", label=Text("as"), help=Text("What the files are.")
+    )
     rate: float | None = quantity(
         None,
         unit="Hz",
@@ -45,6 +47,11 @@ class ExportQuestion(Question):
         le=200.0,
         label=Text("rate of the law"),
         help=Text("Calls of the law a second; as the scenario runs it where none is given."),
+    )
+    single: bool = option(
+        False,
+        label=Text("single precision"),
+        help=Text("Numbers of single precision; what rounding does over the scenario is told."),
     )
     name: str = option(
         "schuler_law",
@@ -57,7 +64,14 @@ class ExportQuestion(Question):
         """Read the law, and replay the scenario."""
         from navcore.exporting.exported import exported
 
-        found = exported(self.scenario, self.method, target=self.as_, rate_hz=self.rate, prefix=self.name)
+        found = exported(
+            self.scenario,
+            self.method,
+            target=self.as_,
+            rate_hz=self.rate,
+            single=self.single,
+            prefix=self.name,
+        )
         unless_stopped(cancelled)
         return found
 
@@ -74,11 +88,7 @@ class ExportQuestion(Question):
     ) -> None:
         """Write the files."""
         self.require_free(out, reads, force=force)
-        texts = self.texts(answer)
-        with placing(out, tuple(texts), [*reads, *self.recordings()]) as hidden:
-            for name, text in texts.items():
-                (hidden / name).write_bytes(utf8(text))
-
-    def texts(self, answer: Answer) -> dict[str, str]:
-        """Return the files of the export."""
-        return vars(answer)["files"]
+        files: Mapping[str, str | bytes] = vars(answer)["files"]
+        with placing(out, tuple(files), [*reads, *self.recordings()]) as hidden:
+            for name, content in files.items():
+                (hidden / name).write_bytes(content if isinstance(content, bytes) else utf8(content))
