@@ -48,6 +48,7 @@ class TwinLaw:
         self.policy: Any = policy
         self.switching: Any = switching
         self.external, self.omega_s, self.step_s = damping == "external", omega_s, step_s
+        self.calm = self.good = 0  # of `states`: calls in a row
         self.network = self._network_in_force(network)
         self.realisation = getattr(network, "realisation", "network") if self.external else "network"
         self.a = math.tan(0.5 * omega_s * step_s)
@@ -79,11 +80,15 @@ class TwinLaw:
             return self.policy.network or (Unity2Network() if network.id == "none" else network)
         if self.policy.id == "schedule":
             return CompassNetwork(**dict(zip(("k1", "k2", "k3"), self.policy.to, strict=True)))
+        if self.policy.id == "mobility":
+            return CompassNetwork(sigma=self.policy.sigma_steady, xi=self.policy.xi)
         return network
 
     def _form(self, xi: float) -> Form:
         if self.policy.id == "schedule":
             return self._gains(*getattr(self.policy, "from"))
+        if self.policy.id == "mobility":
+            return self._gains(*self.network.gains(self.omega_s))
         if self.tunes:
             self.tuned = xi
             return controller(self.network.with_damping(xi), self.omega_s, self.a)
@@ -114,19 +119,23 @@ class TwinLaw:
              "c": self.correction, "v_c": v_c, "heading": heading, "total": total}
         )  # fmt: skip
         self.wish = None
+        fed = self.external
         wanted = getattr(self, f"_policy_{self.policy.id}")(difference, valid)
         self.wish = wanted if self.wish is None else self.wish
+        u = difference if self.external else -v_c
         if self.external and not valid:
             wanted = self.wish = False
         if wanted and not self.damped:
             self.engaged_at = self.now
-        if self.policy.id == "schedule":
-            self._follow_schedule(u)
+        if self.policy.id in ("schedule", "mobility"):
+            self._follow_gains(self._gains_now(), u)
         if len(self.rows) == 1:
             if self.tunes:
                 self.form = self._form(self.target)
             self._clear(u)
         getattr(self, f"_switch_{self.switching.id}")(wanted, u, valid)
+        if self.external != fed and self.damped:
+            self._clear(u)
         if self.switching.id == "bridge":
             u = self._bridge_input(difference)
         elif not self.damped:
@@ -185,6 +194,20 @@ class TwinLaw:
 
     _policy_schedule = _policy_constant
 
+    def _policy_mobility(self, difference: Vector, valid: bool) -> bool:
+        self.measure = self._mean_acceleration()
+        return True
+
+    def _policy_states(self, difference: Vector, valid: bool) -> bool:
+        """0 undamped, 1 internal, 3 external: nothing acts in the azimuth."""
+        own = self.policy
+        calm = self._mean_acceleration() <= own.limit_mps2
+        near = valid and float(np.linalg.norm(difference)) <= own.difference_mps
+        self.good = self.good + 1 if near else 0
+        self.external = self.good > 0 and (self.external or self.good >= self._calls(own.return_s))
+        self.measure = (3.0 if self.external else 1.0) if calm else 0.0
+        return calm
+
     def _policy_threshold(self, difference: Vector, valid: bool) -> bool:
         self.measure = float(np.linalg.norm(difference))
         return self.measure <= self.policy.limit_mps
@@ -195,10 +218,13 @@ class TwinLaw:
         return self.measure <= self.policy.limit_deg * DEG
 
     def _policy_acceleration(self, difference: Vector, valid: bool) -> bool:
+        self.measure = self._mean_acceleration()
+        return self.measure <= self.policy.limit_mps2
+
+    def _mean_acceleration(self) -> float:
         v_c = np.array([row["v_c"] for row in self.rows])
         sizes = np.linalg.norm(np.diff(v_c, axis=0, prepend=v_c[:1]), axis=1) / self.step_s
-        self.measure = float(np.mean(sizes[-self._calls(self.policy.mean_s) :]))
-        return self.measure <= self.policy.limit_mps2
+        return float(np.mean(sizes[-self._calls(self.policy.mean_s) :]))
 
     def _policy_variation(self, difference: Vector, valid: bool) -> bool:
         n, t0 = self._calls(self.policy.n_s), self._calls(self.policy.t0_s)
@@ -226,10 +252,18 @@ class TwinLaw:
         self.target = max(adaptive(self.policy, self.measure / KNOT), self.least)
         return True
 
-    def _follow_schedule(self, u: Vector) -> None:
-        share = min((self.now - self.engaged_at) / self.policy.duration_s, 1.0)
-        first, last = np.array(getattr(self.policy, "from")), np.array(self.policy.to)
-        new = self._gains(*(first + share * (last - first)))
+    def _gains_now(self) -> Vector:
+        own = self.policy
+        if own.id == "mobility":
+            place = [own.low_mps2, own.high_mps2], [own.sigma_steady, own.sigma_moving]
+            sigma = float(np.interp(self.measure, *place))
+            return np.array(CompassNetwork(sigma=sigma, xi=own.xi).gains(self.omega_s))
+        share = min((self.now - self.engaged_at) / own.duration_s, 1.0)
+        first, last = np.array(getattr(own, "from")), np.array(own.to)
+        return first + share * (last - first)
+
+    def _follow_gains(self, gains: Vector, u: Vector) -> None:
+        new = self._gains(*gains)
         if self.realisation == "network":
             self.states = self._discrete(new, self._at_sample(u), u)
         self.form = new

@@ -54,6 +54,9 @@ class GyrocompassExternal(External):
         if method.azimuth.id != "none":
             reason = Text("must be left out beside gyrocompass: one azimuth channel has one loop")
             yield Fault("", "azimuth.id", method.azimuth.id, reason)
+        if method.policy.changes_input:
+            reason = Text("must be another beside gyrocompass, which has no internal damping")
+            yield Fault("", "policy.id", method.policy.id, reason)
         own = method.gyrocompass
         if own is not None and own.sigma * law_step_s > _FASTEST:
             reason = Text(

@@ -35,12 +35,11 @@ class _Whole(NetworkDamping):
         elif not network.poles.real.max(initial=-1.0) < 0.0:
             reason = Text("must have poles with a negative real part only")
             yield Fault("", "azimuth.id", network.id, reason)
-        elif not self.uses_log and abs(network.h0 - 1.0) > _UNITY:
+        elif abs(network.h0 - 1.0) > _UNITY and (not self.uses_log or method.policy.changes_input):
             reason = Text(
-                'must have Y(0) = 1 within {unity:g} with damping = "{damping}", not {h0:.4g}: a part of the '
+                "must have Y(0) = 1 within {unity:g} with internal damping, not {h0:.4g}: a part of the "
                 "Earth's rate would be left out",
                 unity=_UNITY,
-                damping=self.id,
                 h0=network.h0,
             )
             yield Fault("", "azimuth.id", network.id, reason)

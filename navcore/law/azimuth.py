@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined
 from navcore.law.network_state import channel_of, feed, keep_channel
-from navcore.law.records import CLEAR, EXTERNAL, REST, E, N, U
+from navcore.law.records import CLEAR, REST, E, N, U
 from navcore.law.step import Correction
 
 
@@ -72,7 +72,10 @@ def steer(law, c, up):
     p, s = law.p, law.s
     if p.gyrocompass:
         return _compass(law, c, up)
-    external = p.damping == EXTERNAL
+    if s.level_only:
+        s.steered, s.correction[U] = False, 0.0
+        return c, 0.0
+    external = not s.internal
     if s.action == CLEAR or not s.steered:
         s.latitude, s.azimuth_epoch, s.steered = 0.0, -2, True
         u = 0.0 if external else -up.rate

@@ -48,7 +48,15 @@ def combination_faults(
         return
     running = policy.network_in_force(network)
     faults = [*policy.network_faults(network)]
-    if switching.needs_log and CODES[damping] != EXTERNAL:
+    if policy.changes_input and CODES[damping] != EXTERNAL:
+        reason = Text('needs damping = "external": the policy itself passes to internal damping')
+        faults.append(Fault("", "policy.id", policy.id, reason))
+    if policy.changes_input and not switching.follows_input:
+        reason = Text(
+            'must be hard or step with policy "{id}", which changes the input of the network', id=policy.id
+        )
+        faults.append(Fault("", "switching.id", switching.id, reason))
+    elif switching.needs_log and CODES[damping] != EXTERNAL:
         faults.append(Fault("", "switching.id", switching.id, switching.needs_log))
     else:
         faults += switching.network_faults(running, realisation_of(damping, running), policy)

@@ -109,7 +109,13 @@ def prepare_law(
         nominal_xi=xi,
         **_settings(policy, switching, law_step_s, omega_s),
     )
-    s = new_record(LAW_STATE, xi_target=xi, epoch=-1, policies={policy.id: policy.remembered()})
+    s = new_record(
+        LAW_STATE,
+        xi_target=xi,
+        epoch=-1,
+        internal=damping == "internal",
+        policies={policy.id: policy.remembered()},
+    )
     p["tan_half"] = math.tan(0.5 * omega_s * law_step_s)
     _fill_form(p, s, parameters, network, policy, switching)
     if isinstance(azimuth, AzimuthGains):

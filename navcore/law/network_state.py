@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined
-from navcore.law.records import INTERNAL, E, N
+from navcore.law.records import E, N
 
 
 class Channel(NamedTuple):
@@ -23,7 +23,7 @@ def clear_network(law, u_e, u_n):
     constant speed would look like an acceleration.
     """
     p, s = law.p, law.s
-    steady = 1.0 if p.damping == INTERNAL else 0.0
+    steady = 1.0 if s.internal else 0.0
     s.offset[E] = s.offset[N] = 0.0
     for i in range(p.order):
         s.x[E, i] = steady * s.network.steady[i] * u_e

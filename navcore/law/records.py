@@ -40,7 +40,7 @@ COMPASS = record_type(
     gain=REAL,  # what a call adds to it for the north difference, times Omega cos L
 )
 PARAMETERS = {
-    "damping": COUNT,  # FREE, INTERNAL, EXTERNAL
+    "damping": COUNT,  # FREE, INTERNAL, EXTERNAL: as configured; what feeds the networks is in the state
     "realisation": COUNT,  # NETWORK, FEEDBACK, AS_PRINTED
     "order": COUNT,  # states of a level channel
     "azimuth_order": COUNT,  # states of the azimuth channel; 0: nothing acts there
@@ -93,6 +93,8 @@ STATE = {
     "xi_target": REAL,
     "measure": REAL,  # what the policy measured, for the switching view
     "started": FLAG,  # there was a call before
+    "internal": FLAG,  # the networks are fed with minus the computed velocity, not with V_r - V_c
+    "level_only": FLAG,  # the network of the azimuth channel rests
     "engaged": FLAG,  # the loop was damped before
     "clock": REAL,  # s since the first call
     "switch_time": REAL,  # s, last engagement

@@ -16,7 +16,6 @@ from navcore.law.records import (
     AS_DECIDED,
     AS_PRINTED,
     CLEAR,
-    EXTERNAL,
     FREE,
     MASKED,
     NOTHING,
@@ -77,16 +76,21 @@ def _make_step(decide: Any, switch: Any, full: bool) -> Any:
     @inlined
     def step(law, sensed):
         p, s = law.p, law.s
-        external = p.damping == EXTERNAL
-        u_e = s.difference[E] if external else -sensed.v_e
-        u_n = s.difference[N] if external else -sensed.v_n
+        internal = s.internal
+        u_e = -sensed.v_e if internal else s.difference[E]
+        u_n = -sensed.v_n if internal else s.difference[N]
         if full and p.keeps_history:
             remember(law, u_e, u_n, sensed)
         s.wanted = AS_DECIDED
         wanted = decide(p.policy, law, sensed)
         if s.wanted == AS_DECIDED:
             s.wanted = 1 if wanted else 0
-        if external and not s.valid:
+        fed_anew = False
+        if full and s.internal != internal:
+            internal, fed_anew = s.internal, True
+            u_e = -sensed.v_e if internal else s.difference[E]
+            u_n = -sensed.v_n if internal else s.difference[N]
+        if not internal and not s.valid:
             wanted, s.wanted = False, 0
         if full:
             if wanted and not s.damped:
@@ -94,6 +98,8 @@ def _make_step(decide: Any, switch: Any, full: bool) -> Any:
             _follow(p.policy, law, u_e, u_n)
         s.to_xi, s.action = 0.0, NOTHING
         switch(p.switching, law, wanted)
+        if full and fed_anew and s.damped:
+            s.action = CLEAR
         _carry_out(law, u_e, u_n, full)
         s.started = True
         if full and p.runs_on:

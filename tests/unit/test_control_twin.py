@@ -61,6 +61,10 @@ def drawn_blocks(rng: np.random.Generator, step_s: float) -> dict[str, dict[str,
         "variation": {"n_s": times[2], "t0_s": times[3], "a": a, "b": b, "c": c, "count": pick(1, 2, 4)},
         "adaptive": {"lowpass_s": times[4], **pick(*adaptive)},
         "schedule": {"from": first, "to": last, "duration_s": times[5]},
+        "mobility": {"mean_s": times[1], "low_mps2": u(0.0, 0.02), "high_mps2": u(0.03, 0.06), "xi": u(0.3, 1.2),
+                     "sigma_steady": u(1e-3, 0.01), "sigma_moving": u(1e-3, 0.01)},
+        "states": {"mean_s": times[1], "limit_mps2": u(0.01, 0.06), "difference_mps": u(0.5, 2.0),
+                   "return_s": times[2], "settled_s": times[3]},
         "ramp": {"duration_s": 1.0 + step_s * pick(0, 2, 5), "form": pick("state", "as_printed")},
         "step": {"every_s": times[6], "size": u(0.05, 0.4)},
         "bumpless": {"n_s": times[7], "memory_s": times[8]},
@@ -125,7 +129,8 @@ def hold_beside_the_twin(rng: np.random.Generator, run: LawRun, twin: TwinLaw) -
 def test_any_law_equals_its_twin_call_by_call(policy_id: str, switching_id: str) -> None:
     rng = np.random.default_rng([list(POLICIES).index(policy_id), list(SWITCHINGS).index(switching_id)])
     laws = drawn_laws(rng, policy_id, switching_id)
-    assert len(laws) == (0 if policy_id == "schedule" and switching_id not in ("hard", "keep") else LAWS)
+    switchings = {"schedule": ("hard", "keep"), "mobility": ("hard", "keep"), "states": ("hard", "step")}
+    assert len(laws) == (LAWS if switching_id in switchings.get(policy_id, SWITCHINGS) else 0)
     for run, twin in laws:
         hold_beside_the_twin(rng, run, twin)
 

@@ -19,6 +19,8 @@ POLICIES = registry(
     "navcore.law.policy.variation:Variation",
     "navcore.law.policy.adaptive:Adaptive",
     "navcore.law.policy.schedule:Schedule",
+    "navcore.law.policy.mobility:Mobility",
+    "navcore.law.policy.states:States",
 )
 """All policies by id, in the order in which the page offers them."""
 

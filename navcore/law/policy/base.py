@@ -75,6 +75,8 @@ class PolicyParameters(Parameters):
         The policy needs the clock and the history.
     tunes : bool
         The policy sets the damping coefficient of a network that can be re-tuned.
+    changes_input : bool
+        The policy changes between V_r - V_c and the ship's own velocity as the input of the networks.
     measure : Measure or None
         What ``s.measure`` holds.
     """
@@ -89,6 +91,7 @@ class PolicyParameters(Parameters):
     remembers: ClassVar[int] = USE_NOTHING
     keeps_time: ClassVar[bool] = False
     tunes: ClassVar[bool] = False
+    changes_input: ClassVar[bool] = False
     measure: ClassVar[Measure | None] = None
     id: Any  # a Literal in each subclass
 

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import create_model, model_validator
 
-from navcore.foundation.compiled import inlined, kernel
-from navcore.foundation.errors import Fault
+from navcore.foundation.compiled import kernel
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
 from navcore.foundation.records import REAL, record_type
 from navcore.foundation.text import Text
 from navcore.foundation.times import EitherUnit
-from navcore.law.policy.base import PolicyParameters
-from navcore.law.records import NETWORK, E, N
+from navcore.law.policy.compass_gains import GainPolicy, put_gains
 from navcore.networks.base import NetworkParameters, refuse
-from navcore.networks.compass import CompassNetwork
 
 _Gain = Annotated[float, bounded(ge=-1e10, le=1e10)]
 _LARGEST_K1 = 10.0
@@ -42,45 +38,18 @@ _FROM: dict[str, Any] = {
         _gains((0.0264, 156.063, 0.904), "from", Text("Gains at each start of the damping (Zha 2019, 4.2).")),
     )
 }
-_From = create_model("_From", __base__=PolicyParameters, **_FROM)
-
-
-@inlined
-def _decide(own, memory, law, sensed):
-    """Return True."""
-    return True
+_From = create_model("_From", __base__=GainPolicy, **_FROM)
 
 
 @kernel
 def _follow(own, memory, law, u_e, u_n):
-    """Put the gains of the time since the last start in place (inputs u_E, u_N, m/s).
-
-    The gains move by a step's share of the passage each call, so the correction has no jump; the integral
-    part is carried over as it is. In the network form that is the part of Q that is not proportional.
-    """
-    p, s, network = law.p, law.s, law.s.network
+    """Put the gains of the time since the last start in place (inputs u_E, u_N, m/s)."""
+    s = law.s
     share = min(max((s.clock - s.switch_time) / own.duration, 0.0), 1.0)
     k1 = own.first[0] + share * (own.last[0] - own.first[0])
     k2 = own.first[1] + share * (own.last[1] - own.first[1])
     k3 = own.first[2] + share * (own.last[2] - own.first[2])
-    if p.realisation != NETWORK:
-        s.feedback_gain = k1
-        network.B[0], network.C[0] = -k3 * p.law_step, 1.0
-        network.D = -k2 - 0.5 * k3 * p.law_step
-        return
-    # c = -K2 u + v, v' = -k v + b u in normalised time; x = v (1 + a k) - a b u is its bilinear state
-    a, dA, c = p.tan_half, network.dA[0, 0], network.C[0]
-    before, b_before = -dA / (2.0 * a * c), network.B[0] / (2.0 * a * c)
-    k = k1 / p.omega_s
-    b = k - k3 / p.omega_s + k * k2
-    inverse = 1.0 / (1.0 + a * k)
-    if c != 0.0:
-        for channel, u in ((E, u_e), (N, u_n)):
-            v = (s.x[channel, 0] + a * b_before * u) / (1.0 + a * before)
-            s.x[channel, 0] = v * (1.0 + a * k) - a * b * u
-    network.dA[0, 0], network.B[0], network.C[0] = -2.0 * a * k * inverse, 2.0 * a * b * inverse, inverse
-    network.D = -k2 + a * b * inverse
-    network.steady[0] = b / k if k != 0.0 else 0.0
+    put_gains(law, k1, k2, k3, u_e, u_n)
 
 
 class Schedule(EitherUnit, _From):
@@ -94,9 +63,7 @@ class Schedule(EitherUnit, _From):
         last=(REAL, (3,)),  # after the passage
         duration=REAL,  # s
     )
-    decide: ClassVar[Any] = _decide
     follow: ClassVar[Any] = _follow
-    keeps_time: ClassVar[bool] = True
     id: Literal["schedule"] = "schedule"
     to: tuple[_Gain, _Gain, _Gain] = _gains(
         (7.68e-3, 6.68, 7.68e-3), "to", Text("Gains after that time (Zha 2019, 4.2).")
@@ -130,23 +97,9 @@ class Schedule(EitherUnit, _From):
         """Both sets; duration."""
         return {"first": getattr(self, "from"), "last": self.to, "duration": self.duration_s}
 
-    def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
-        """Only `compass` has the gains."""
-        if not isinstance(network, CompassNetwork):
-            allowed = Text(
-                'changes the gains K₁, K₂, K₃: needs network.id = "compass", not "{id}"', id=network.id
-            )
-            yield Fault("", "policy.id", self.id, allowed)
-
-    def sets(self, network: NetworkParameters) -> tuple[str, ...]:
-        """All gains of the network."""
-        return tuple(f"network.{name}" for group in type(network).alternatives for name in group)
-
-    def network_in_force(self, network: NetworkParameters) -> NetworkParameters:
-        """`compass` with the gains that stay."""
-        k1, k2, k3 = self.to
-        realisation = network.realisation if isinstance(network, CompassNetwork) else "feedback"
-        return CompassNetwork.model_validate({"k1": k1, "k2": k2, "k3": k3, "realisation": realisation})
+    def lasting(self) -> dict[str, float]:
+        """The gains that stay."""
+        return dict(zip(("k1", "k2", "k3"), self.to, strict=True))
 
     def warnings(self, network: NetworkParameters) -> tuple[str, ...]:
         """Gains on the way at which the loop is unstable (Routh: K1, K3, 1 + K2 > 0, K1 (1 + K2) > K3)."""

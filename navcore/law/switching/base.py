@@ -40,6 +40,8 @@ class SwitchingParameters(Parameters):
         The method moves the damping coefficient of a network that can be re-tuned.
     freezes : bool
         While undamped the last correction stays.
+    follows_input : bool
+        The method keeps nothing that belongs to the network's input, so that a policy may change that.
     needs_log : str
         Why the method works against a log only; empty where it needs none.
     """
@@ -54,6 +56,7 @@ class SwitchingParameters(Parameters):
     keeps_time: ClassVar[bool] = False
     tunes: ClassVar[bool] = False
     freezes: ClassVar[bool] = False
+    follows_input: ClassVar[bool] = False
     needs_log: ClassVar[str] = ""
     id: Any  # a Literal in each subclass
 
@@ -100,7 +103,7 @@ class SwitchingParameters(Parameters):
     def _begins_anew(self, policy: PolicyParameters) -> Fault:
         return self._refused(
             Text(
-                'must be hard or keep with policy "{id}", whose gains begin anew at each start', id=policy.id
+                'must be hard or keep with policy "{id}", which sets the gains', id=policy.id
             )
         )
 

@@ -319,7 +319,7 @@ class Bridge(SwitchingParameters):
     def network_faults(
         self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
-        """Refuse gains that begin anew, and feedback, which the filter knows nothing of."""
+        """Refuse gains that a policy sets, and feedback, which the filter knows nothing of."""
         if policy.follow is not None:
             yield self._begins_anew(policy)
         elif realisation != "network":

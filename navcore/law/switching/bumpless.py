@@ -132,7 +132,7 @@ class Bumpless(SwitchingParameters):
     def network_faults(
         self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
-        """Refuse gains that begin anew, and a realisation that never comes to rest."""
+        """Refuse gains that a policy sets, and a realisation that never comes to rest."""
         if policy.follow is not None:
             yield self._begins_anew(policy)
         elif realisation != "network":

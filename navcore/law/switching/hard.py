@@ -23,4 +23,5 @@ class Hard(SwitchingParameters):
 
     switch: ClassVar[Any] = switch_hard
     plain: ClassVar[bool] = True
+    follows_input: ClassVar[bool] = True
     id: Literal["hard"] = "hard"

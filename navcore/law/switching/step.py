@@ -8,7 +8,7 @@ from navcore.foundation.compiled import inlined
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import REAL, record_type
 from navcore.foundation.text import Text
-from navcore.law.records import CLEAR, EXTERNAL
+from navcore.law.records import CLEAR
 from navcore.law.switching.base import SwitchingParameters
 
 _NOTHING = 1e-9
@@ -18,7 +18,7 @@ _NOTHING = 1e-9
 def _switch(own, memory, law, wanted):
     """Move the coefficient towards its target; undamped when it has come to nothing."""
     p, s = law.p, law.s
-    if p.damping == EXTERNAL and not s.valid:
+    if not s.internal and not s.valid:
         s.damped, s.xi = False, 0.0
         return
     target = s.xi_target if wanted else 0.0
@@ -51,6 +51,7 @@ class Step(SwitchingParameters):
     switch: ClassVar[Any] = _switch
     keeps_time: ClassVar[bool] = True
     tunes: ClassVar[bool] = True
+    follows_input: ClassVar[bool] = True
     id: Literal["step"] = "step"
     size: float = quantity(
         0.1,
