@@ -5,8 +5,9 @@ from pathlib import Path
 from navcore.law.policy.variation import Variation
 from navcore.scenario.model import Scenario
 from schuler_bench.plots import style
-from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.blocks import diagram
 from schuler_bench.views.diagram.membership import membership_svg
+from schuler_bench.views.diagram.parts import State
 from schuler_bench.views.diagram.svg import diagram_svg
 
 FOLDER = Path(__file__).parents[1] / "docs" / "diagrams"

@@ -21,6 +21,8 @@ _WORDS = {
     "variation": Text("variation (of the log)"),
     "adaptive": Text("adaptive (coefficient)"),
     "schedule": Text("schedule (of gains)"),
+    "mobility": Text("mobility (gains by acceleration)"),
+    "states": Text("states (five of Sun)"),
     # switching
     "hard": Text("hard (reset)"),
     "keep": Text("keep (runs on)"),

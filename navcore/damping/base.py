@@ -17,7 +17,7 @@ from navcore.law.combination import combination_faults, combination_warnings, ne
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import LawKind
 from navcore.law.switching.base import SwitchingParameters
-from navcore.networks.azimuth_loop import AzimuthChannel
+from navcore.networks.azimuth_loop import AzimuthChannel, AzimuthGains
 from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.known import transfer_at
 from navcore.networks.undamped import UndampedNetwork
@@ -46,16 +46,15 @@ class Need(NamedTuple):
 
 
 class GyrocompassSettings(Protocol):
-    """Decay rate (1/s) and damping ratio of an azimuth loop."""
+    """Settings of an azimuth loop."""
 
     @property
     def sigma(self) -> float:
-        """1/s."""
+        """Decay rate, 1/s."""
         ...
 
-    @property
-    def xi(self) -> float:
-        """Damping ratio."""
+    def gains(self, omega_s: float, gravity: float) -> AzimuthGains:
+        """Gains at a Schuler frequency (rad/s) and a gravity (m/s^2)."""
         ...
 
 

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from navcore.networks.base import LinearNetwork
 
 
@@ -24,6 +26,17 @@ def azimuth_gains(sigma: float, xi: float, omega_s: float, gravity: float) -> Az
     """Gains for (s^2 + 2 sigma s + sigma^2/xi^2)^2; sigma and omega_s in rad/s, gravity in m/s^2."""
     stiffness = sigma**2 / xi**2
     return AzimuthGains(2.0 * sigma, 2.0 * stiffness / omega_s**2 - 1.0, stiffness**2 / gravity, 2.0 * sigma)
+
+
+def azimuth_polynomial(gains: AzimuthGains, omega_s: float, gravity: float) -> np.ndarray:
+    """Characteristic polynomial of the loop of the heading, in p = s/omega_s, descending, shape (5,).
+
+    s (s + K_U4) (s^2 + K_U1 s + omega_s^2 (1 + K_U2)) + g K_U3, omega_s in rad/s, gravity in m/s^2.
+    """
+    level = [1.0, gains.k1 / omega_s, 1.0 + gains.k2]
+    loop = np.polymul([1.0, gains.k4 / omega_s, 0.0], level)
+    loop[-1] += gravity * gains.k3 / omega_s**4
+    return loop
 
 
 AzimuthChannel = LinearNetwork | AzimuthGains

@@ -16,8 +16,9 @@ from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.plots import style
 from schuler_bench.views import load as load_views
-from schuler_bench.views.diagram.blocks import WIDTH, Block, Diagram, State, Switch, diagram
+from schuler_bench.views.diagram.blocks import diagram
 from schuler_bench.views.diagram.membership import memberships as memberships_of
+from schuler_bench.views.diagram.parts import WIDTH, Block, Diagram, State, Switch
 from schuler_bench.views.diagram.svg import diagram_svg
 from schuler_bench.views.diagram.view import beneath, state_at
 from tools.diagrams import FOLDER, METHODS, drawn, memberships
@@ -114,6 +115,41 @@ def test_a_coefficient_that_a_policy_sets_is_shown_as_it_is_now() -> None:
         assert f"ζ {coefficient:.3g} now" in words_of(diagram(run.scenario, index, state))
 
 
+@pytest.mark.parametrize("frame", ["enu", "body"])
+@pytest.mark.parametrize("name", METHODS)
+def test_a_strapdown_system_shows_its_mathematical_platform(name: str, frame: str) -> None:
+    """Deng, figures 3 and 4, and Sun, figure 9: C_b^n turns the force, and the log of the ship's axes."""
+    strapdown = {"run": {"fidelity": "strapdown"}, "reference": {"kind": "log", "frame": frame}}
+    level, full = (diagram(scenario(METHODS[name], **blocks), 0) for blocks in ({}, strapdown))
+    assert "C_b^n" not in words_of(level)
+    words = words_of(full)
+    assert "turns C_b^n by" in words and "f^b" in words and "ω_ib − ω_in" in words
+    assert words.count("\nC_b^n") == (2 if frame == "body" and "log" in words_of(level) else 1)
+    assert ("ω_en(V*)" in words) is (level.parts != full.parts and "Switch" in str(level.parts))
+    assert ("ω_en(V_c)" in words) is not ("ω_en(V*)" in words)
+    for one, other in combinations(blocks_of(full), 2):
+        apart = one.x + one.width <= other.x or other.x + other.width <= one.x
+        assert apart or one.y + one.height <= other.y or other.y + other.height <= one.y, (one, other)
+    assert max(one.y + one.height for one in blocks_of(full)) <= full.height
+    assert 'dy="-4.5" font-size="75%">n<' in diagram_svg(full, style.method_color(0), State())
+
+
+@pytest.mark.parametrize(
+    ("averaging", "told"),
+    [
+        ({}, ("copy C, begun 42.3 min ahead", "copy D, begun 11.97 h ahead", "½ (B + C)", "½ (B + D)")),
+        ({"earth": False}, ("copy C, begun 42.3 min ahead", "½ (B + C)")),
+        ({"variant": "cascade", "earth": False}, ("3 copies, up to 84.6 min ahead",)),
+        ({"variant": "cascade"}, ("7 copies, up to 13.38 h ahead",)),
+    ],
+)
+def test_each_copy_of_an_averaging_method_is_drawn_with_its_lead(averaging, told: tuple[str, ...]) -> None:
+    """Zhao, figure 2: C is half a Schuler period ahead, D half a sidereal day."""
+    words = words_of(diagram(scenario({"damping": "averaging", "averaging": averaging}), 0))
+    assert [each for each in told if each not in words] == []
+    assert ("copy D" in words) is (averaging == {})
+
+
 def test_a_method_without_a_switch_draws_none() -> None:
     kinds = {
         name: [p for p in diagram(scenario(m), 0).parts if isinstance(p, Switch)]
@@ -161,8 +197,12 @@ def test_the_membership_functions_stand_beneath_the_loop_of_their_policy() -> No
             ("low-pass 100 s", "(9) as printed", "by at most 0.2", "every 120 s"),
         ),
         ({"policy": {"id": "variation"}, "switching": {"id": "hard"}}, ("s ≥ 0.45: do not damp",)),
+        (
+            {"policy": {"id": "states", "settled_s": 900.0}, "switching": {"id": "hard"}},
+            ("≤ 0.01 m/s²?", "≤ 1 m/s for 60 s?", "for 900 s?", "internal damping", "undamped"),
+        ),
     ],
-    ids=["Liu 9 and 10", "Sun 8", "Liu 9"],
+    ids=["Liu 9 and 10", "Sun 8", "Liu 9", "five states"],
 )
 def test_the_flow_chart_of_a_decision_has_the_values_of_the_method(
     method: dict, told: tuple[str, ...]
@@ -192,6 +232,8 @@ def test_the_forecast_stands_beneath_the_loop_of_averaging() -> None:
     assert len(lines) == 6 and {len(points) for points in lines} == {71}
     assert all(len({point.split(",")[1] for point in points}) == 1 for points in lines)
     assert "forecast less what came" in svg
+    assert "more than 5 σ off its median, and 2 s around it" in svg
+    assert "run ahead on this forecast by 42.2 min, 11.97 h" in svg
     sloping = beneath(run_of("zhao-turntable", averaging | {"averaging": {"order": 1}}), 0)
     first = re.findall(r'polyline points="([^"]+)"', sloping)[0].split()
     assert len({point.split(",")[1] for point in first}) > 30

@@ -154,7 +154,7 @@ def test_a_gyrocompass_comes_and_goes_and_takes_the_place_of_an_azimuth_network(
     compass = north.method[1]
     assert (compass.azimuth.id, compass.gyrocompass) == ("none", Gyrocompass())
     shown = [spec.path[-1] for spec in azimuth_fields(north, 1)]
-    assert shown == ["gyrocompass", "sigma", "xi"]
+    assert shown == ["gyrocompass", "sigma", "xi", "k1", "k2", "k3", "k4"]
     slower = edits.with_value(edits.with_value(whole, path, True), (*path, "sigma"), 0.001)
     assert slower.method[1].gyrocompass == Gyrocompass(sigma=0.001)
     assert edits.with_value(slower, path, False).method[1].gyrocompass is None

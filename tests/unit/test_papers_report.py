@@ -21,7 +21,7 @@ from tools.papers.measure import interval, last_above, peak_gain
 from tools.papers.runs import Runs, method, scenario_of
 from tools.papers.write import papers, write_report
 
-OWN = {"sea-gyrocompass", "sea-whole", "sikuliaq-like", "sikuliaq-recorded", "sun-states"}
+OWN = {"deng-mobility", "sea-gyrocompass", "sea-whole", "sikuliaq-like", "sikuliaq-recorded", "sun-states"}
 """Presets of no exhibit: no paper prints numbers for them."""
 ITEMS = {"liu-days", "liu-step", "liu-switch", "sun-vehicle", "zha-laboratory"}
 """Presets that exhibits make themselves from other presets: `test_paper_presets` holds them equal."""

@@ -8,6 +8,7 @@ import pytest
 
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import whole_system
+from navcore.damping.gyrocompass import Gyrocompass
 from navcore.damping.internal import Internal
 from navcore.engine.drivers.batch import run_batches
 from navcore.engine.run import Run
@@ -17,7 +18,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import Parameters, quantity
 from navcore.foundation.units import ARCMIN, DEG
 from navcore.networks import parse_network
-from navcore.networks.azimuth_loop import azimuth_gains
+from navcore.networks.azimuth_loop import AzimuthGains, azimuth_gains, azimuth_polynomial
 from navcore.quantities import NAMES
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
@@ -177,6 +178,64 @@ def test_a_restart_after_an_outage_agrees_in_both_fidelities() -> None:
         assert np.all(np.max(np.abs(linear - full), axis=0) <= 0.02 * peak), switching
 
 
+# ------------------------------------------------------------ Sun's five states
+
+
+CALM_STATES = {"id": "states", "limit_mps2": 0.02, "return_s": 60.0, "settled_s": 3600.0}
+"""Of a ship whose level errors leave |a| well below the limit."""
+
+
+def five_states(fidelity: str, *others: dict[str, Any]) -> Run:
+    """Run a ship that manoeuvres at 3 h; its log is wrong by 2 m/s from 1 to 2 h and from 5 h on."""
+    legs = [
+        {"duration_s": 10800.0, "speed_mps": 3.0, "heading_deg": 45.0},
+        {"duration_s": 18000.0, "speed_mps": 9.0, "heading_deg": 45.0, "accel_mps2": 0.05},
+    ]
+    wrong = ((1.0, 0.1), (2.0, -0.1), (5.0, 0.1))
+    events = [{"t_h": at, "duration_s": 20.0, "accel_mps2": [rate, 0.0]} for at, rate in wrong]
+    return simulate(
+        made(
+            {"azimuth": UNITY2, "policy": CALM_STATES},
+            *others,
+            hours=8.0,
+            run={"fidelity": fidelity, "rate_hz": 10.0},
+            motion={"kind": "legs", "leg": legs},
+            reference={"event": events},
+            initial_error={"attitude_arcmin": [0.1, 0.1, 1.0]},
+        )
+    )
+
+
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_a_ship_passes_through_the_five_states(fidelity: str) -> None:
+    """Sun 2017, section 1: first horizontal, then whole; internal on a bad log, undamped in a manoeuvre."""
+    run = five_states(fidelity)
+    state, damped = run.methods[0].law_series[:, 3], run.methods[0].law_series[:, 1]
+    t_h = run.methods[0].t_s / 3600.0
+    wanted = [(0.5, 3), (1.5, 2), (2.9, 4), (3.015, 0), (3.5, 3), (4.5, 4), (5.5, 2)]
+    assert [(at, int(state[np.argmin(np.abs(t_h - at))])) for at, _ in wanted] == wanted
+    assert np.array_equal(damped > 0.5, state > 0.0)
+    assert set(np.unique(state)) == {0.0, 2.0, 3.0, 4.0}  # 1: internal before it has settled
+    short = {"azimuth": UNITY2, "policy": {**CALM_STATES, "settled_s": 1e6}}
+    assert set(np.unique(five_states(fidelity, short).methods[1].law_series[:, 3])) == {0.0, 1.0, 3.0}
+
+
+def test_each_of_the_five_states_is_the_loop_that_bears_its_name() -> None:
+    """With a policy that stays in one state the run is that of the kind of damping itself."""
+    stays = {"limit_mps2": 100.0, "settled_s": 1e6}
+    external, whole = ({"azimuth": UNITY2, "policy": {"id": "states", **one}}
+                       for one in (stays, {**stays, "settled_s": 0.1, "difference_mps": 1000.0}))  # fmt: skip
+    internal = {"azimuth": UNITY2, "policy": {"id": "states", **stays, "difference_mps": 1e-3}}
+    own = {"reference": {"bias_mps": [0.3, -0.2]}, "initial_error": {"attitude_arcmin": [0.1, 0.1, 5.0]}}
+    run = simulate(
+        made(external, {}, whole, {"azimuth": UNITY2}, internal, {"damping": "internal"}, hours=12.0, **own)
+    )
+    position = columns(run, "position_m")
+    for i in (0, 2, 4):
+        assert position[i] == pytest.approx(position[i + 1], rel=1e-9, abs=1e-9)
+        assert np.max(np.abs(position[i] - position[(i + 2) % 6])) > 100.0
+
+
 # ------------------------------------------------------------ what does not go together
 
 
@@ -193,6 +252,34 @@ def test_a_restart_after_an_outage_agrees_in_both_fidelities() -> None:
             "<= 0.1",
         ),
         ({"gyrocompass": {}, "damping": "internal"}, {}, "method.0.gyrocompass", "external"),
+        (
+            {"gyrocompass": {"k4": 0.5}, "azimuth": {"id": "none"}},
+            {},
+            "method.0.gyrocompass.k4",
+            "<= 0.2",
+        ),
+        (
+            {"gyrocompass": {}, "azimuth": {"id": "none"}, "policy": {"id": "states"}},
+            {},
+            "method.0.policy.id",
+            "no internal damping",
+        ),
+        ({"damping": "internal", "policy": {"id": "states"}}, {}, "method.0.policy.id", "external"),
+        (
+            {"policy": {"id": "states"}, "switching": {"id": "bumpless"}},
+            {},
+            "method.0.switching.id",
+            "hard or step",
+        ),
+        (
+            {
+                "policy": {"id": "states"},
+                "azimuth": {"id": "custom", "zeros": [-1e-4], "poles": [-2e-4], "gain": 1.0},
+            },
+            {},
+            "method.0.azimuth.id",
+            "Y(0)",
+        ),
         ({}, {"site": {"lat_deg": 86.0, "lon_deg": 0.0}}, "method.0.damping", "85"),
         (
             {
@@ -284,6 +371,40 @@ def test_the_whole_system_with_a_gyrocompass_has_its_poles_and_the_sampled_law_a
             made(method, hours=12.0, reference={"rate_hz": 1.0 / period_s}, initial_error=start)
         ).methods
         assert (run.status, growth > 0.0) == (status, status == "diverged")
+
+
+def test_gains_of_one_s_own_take_the_place_of_those_of_a_decay_rate() -> None:
+    """Deng 2019, section II B: K_U1 to K_U4; the whole system's poles are those of the loop with them."""
+    omega_s = SPHERE.schuler_frequency(0.0)
+    gravity = omega_s**2 * 6378137.0
+    own = Gyrocompass(sigma=0.002, xi=0.707, k3=4e-12, k4=0.006)
+    gains, usual = own.gains(omega_s, gravity), azimuth_gains(0.002, 0.707, omega_s, gravity)
+    assert gains == usual._replace(k3=4e-12, k4=0.006)
+    poles = np.roots(azimuth_polynomial(gains, omega_s, gravity)) * omega_s
+    whole = whole_system(parse_network(COMPASS).transfer(omega_s), 5.0 * DEG, azimuth=gains)
+    for pole in poles[poles.imag >= 0.0]:
+        assert min(abs(mode.eigenvalue - pole) for mode in whole.modes) < 0.05 * abs(pole)
+    alone = usual._replace(k1=0.0, k4=1e-3)
+    s = np.roots(azimuth_polynomial(usual, omega_s, gravity)) * omega_s
+    assert np.poly(s) == pytest.approx(np.polymul(*[[1.0, 0.004, 0.002**2 / 0.707**2]] * 2), rel=1e-6)
+    assert np.roots(azimuth_polynomial(alone, omega_s, gravity)).real.max() > 0.0
+    method = {"network": COMPASS, "gyrocompass": {"k1": 0.0, "k4": 1e-3}}
+    (told,) = [text for text in run_warnings(method) if "K_U" in text]
+    assert "unstable" in told
+    start = {"attitude_arcmin": [0.0, 0.0, 10.0]}
+    blocks = [{"network": COMPASS, "gyrocompass": each} for each in (at_the_site()._asdict(), GYROCOMPASS)]
+    given, left = columns(simulate(made(*blocks, hours=2.0, initial_error=start)), "phi_u_rad")
+    assert given == pytest.approx(left, rel=1e-9) and np.ptp(given) > 5.0 * ARCMIN
+
+
+def at_the_site() -> AzimuthGains:
+    omega_s = made({"network": COMPASS}).omega_s
+    return azimuth_gains(0.002, 0.707, omega_s, omega_s**2 * 6378137.0)
+
+
+def run_warnings(method: dict[str, Any]) -> tuple[str, ...]:
+    (run,) = simulate(made(method, hours=0.1)).methods
+    return run.warnings
 
 
 def test_the_page_offers_an_azimuth_network_where_one_can_be_chosen() -> None:

@@ -4,154 +4,44 @@ The figures of the papers, in one form for all kinds of damping: Deng 1 to 4, Li
 and 5 to 9 (theory.md 3).
 """
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
+from navcore.averaging.copies import copies_of
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.notation import symbol, with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
-from navcore.foundation.units import MINUTE
+from navcore.foundation.units import HOUR, MINUTE
 from navcore.networks.base import NetworkParameters
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from schuler_bench.plots.units import number
+from schuler_bench.views.diagram.parts import (
+    HIGH,
+    LOG,
+    LOW,
+    METHOD,
+    SENSORS,
+    WIDTH,
+    Block,
+    Diagram,
+    Line,
+    Part,
+    State,
+    Sum,
+    Switch,
+    Word,
+)
+from schuler_bench.views.diagram.platform import platform, platform_height
 
-METHOD, LOG, SENSORS = "Method", "Log", "Sensors"
-"""Tabs that a block opens."""
-WIDTH = 780
 _LINE, _BRANCH = 84, 166
 """Height of the main line, and of the damping below it."""
-_HIGH, _LOW = 268, 226
-"""Of one channel, with and without the blocks that decide."""
+_COPIES, _COPY = 214, 82
+"""Line of the first copy of a navigation, and from one to the next."""
+_BELOW = 30
+"""Room below the last copy."""
 _LETTERS = 21
 """In a line of the network's block."""
-
-
-@dataclass(frozen=True)
-class State:
-    """State of the law at a moment.
-
-    Attributes
-    ----------
-    damped : bool
-        The switch is closed.
-    coefficient : float or None
-        Damping coefficient in force, where a policy sets it.
-    """
-
-    damped: bool = True
-    coefficient: float | None = None
-
-
-@dataclass(frozen=True)
-class Block:
-    """A box with lines of text; what is left of ``opens`` empty cannot be pressed.
-
-    Attributes
-    ----------
-    x, y, width, height : float
-        Upper left corner and size, px.
-    lines : tuple of str
-        The first one is written larger; ``V_c`` has an index.
-    opens : str
-        Tab with its controls.
-    own : bool
-        It belongs to the method, and has its colour.
-    """
-
-    x: float
-    y: float
-    width: float
-    height: float
-    lines: tuple[str, ...]
-    opens: str = ""
-    own: bool = False
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of signal through points, with an arrow at its end.
-
-    Attributes
-    ----------
-    points : tuple of (float, float)
-    own : bool
-        It is part of the damping, and dead while the switch is open.
-    dashed : bool
-        It carries a decision, no signal.
-    arrow : bool
-    """
-
-    points: tuple[tuple[float, float], ...]
-    own: bool = False
-    dashed: bool = False
-    arrow: bool = True
-
-
-@dataclass(frozen=True)
-class Sum:
-    """A circle in which signals are added.
-
-    Attributes
-    ----------
-    x, y : float
-        Its middle.
-    minus : tuple of str
-        Sides at which what enters is subtracted: "left", "top", "bottom".
-    """
-
-    x: float
-    y: float
-    minus: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Word:
-    """A word beside a line; ``muted`` is written paler."""
-
-    x: float
-    y: float
-    text: str
-    anchor: str = "middle"
-    muted: bool = False
-
-
-@dataclass(frozen=True)
-class Switch:
-    """The switch of the damping, at its left end."""
-
-    x: float
-    y: float
-
-
-Part = Block | Line | Sum | Word | Switch
-
-
-@dataclass
-class Diagram:
-    """All parts of a method's picture.
-
-    Attributes
-    ----------
-    title, told : str
-        Its name, and what it is in a line.
-    parts : list
-        In the order in which they are drawn.
-    height : float
-        px; the width is `WIDTH`.
-    """
-
-    title: str
-    told: str
-    parts: list[Part] = field(default_factory=list)
-    height: float = _HIGH
-
-    @property
-    def decides(self) -> bool:
-        """Whether a policy, or an outage of the log, opens the switch."""
-        return any(isinstance(part, Line) and part.dashed for part in self.parts)
 
 
 def diagram(scenario: Scenario, index: int, state: State | None = None) -> Diagram:
@@ -173,13 +63,18 @@ def diagram(scenario: Scenario, index: int, state: State | None = None) -> Diagr
     if method.kind.carrying == "filter":
         found.parts += _filter(scenario)
     elif method.kind.carrying == "copies":
-        found.parts += _copies(scenario)
+        found.parts += _copies(scenario, method)
     elif method.kind.uses_network:
         found.parts += _damping(scenario, method, state)
-    found.height = _HIGH if found.decides or method.kind.carrying != "law" else _LOW
+    found.height = HIGH if found.decides or method.kind.carrying != "law" else LOW
+    if method.kind.carrying == "copies":
+        found.height = max(part.y + part.height for part in found.parts if isinstance(part, Block)) + _BELOW
     if method.kind.azimuth(method, scenario.omega_s) is not None:
         found.parts += _azimuth(scenario, method, found.height)
-        found.height += _LOW
+        found.height += LOW
+    if scenario.run.fidelity == "strapdown":
+        found.parts += platform(scenario, method, found.height)
+        found.height += platform_height(method)
     return found
 
 
@@ -287,16 +182,46 @@ def _filter(scenario: Scenario) -> Iterator[Part]:
     yield Word(580, y + 50, Text("corrections of velocity, attitude and drifts"), muted=True)
 
 
-def _copies(scenario: Scenario) -> Iterator[Part]:
-    """Averaged copies of a free navigation."""
-    y, half = _BRANCH + 20, f"{math.pi / scenario.omega_s / MINUTE:.1f} min"
-    yield Block(
-        264, y - 24, 190, 48, (Text("copy, begun {half} ahead", half=half), "e^(sT_s/2)"), METHOD, True
-    )
-    yield Line(((454, y), (WIDTH - 62, y)), own=True)
-    yield Word(359, y + 42, Text("the same navigation on forecast sensors"), muted=True)
-    yield Block(WIDTH - 62, y - 24, 54, 48, (Text("mean"), "½ Σ"), METHOD, own=True)
-    yield Line(((WIDTH - 35, _LINE), (WIDTH - 35, y - 24)), own=True)
+def _copies(scenario: Scenario, method: Method) -> Iterator[Part]:
+    """Averaged copies of a free navigation: Zhao's B, C and D, or a cascade."""
+    site = scenario.site.site()
+    copies = copies_of(method.settings, scenario.omega_s, site.lat, site.height, scenario.earth)
+    if copies.level == copies.slow:
+        count, longest = len(copies.ahead_s) - 1, ahead_words(copies.ahead_s[-1])
+        if count == 1:
+            lines = (Text("copy C, begun {ahead} ahead", ahead=longest), "e^(sT_s/2)")
+            yield from _copy(_COPIES, lines, ("½ (B + C)",), WIDTH - 88.0, WIDTH - 48.0)
+            return
+        lines = (
+            Text("{count} copies, up to {ahead} ahead", count=count, ahead=longest),
+            Text("each pair half a period apart"),
+        )
+        yield from _copy(_COPIES, lines, (Text("mean"), "1/n Σ"), WIDTH - 88.0, WIDTH - 48.0)
+        return
+    _, half, day = (ahead_words(ahead) for ahead in copies.ahead_s)
+    lines = (Text("copy C, begun {ahead} ahead", ahead=half), "e^(sT_s/2)")
+    yield from _copy(_COPIES, lines, ("½ (B + C)", Text("velocity, tilt")), 626.0, 716.0)
+    lines = (Text("copy D, begun {ahead} ahead", ahead=day), "e^(sT_e/2)")
+    yield from _copy(_COPIES + _COPY, lines, ("½ (B + D)", Text("position, heading")), 642.0, WIDTH - 20.0)
+
+
+def _copy(
+    y: float, lines: tuple[str, ...], mean: tuple[str, ...], left: float, down: float
+) -> Iterator[Part]:
+    """One copy, and the mean with the main navigation: its left edge, and where that comes down (px)."""
+    width = 80.0 if left > 660.0 else 120.0
+    yield Block(264, y - 24, 236, 48, lines, METHOD, own=True)
+    yield Line(((500, y), (left, y)), own=True)
+    yield Word(382, y + 42, Text("the same navigation on forecast sensors"), muted=True)
+    yield Block(left, y - 24, width, 48, mean, METHOD, own=True)
+    yield Line(((down, _LINE), (down, y - 24)), own=True)
+
+
+def ahead_words(seconds: float) -> str:
+    """How far a copy is ahead, in minutes or hours."""
+    if seconds < HOUR * 2.0:
+        return with_unit(f"{seconds / MINUTE:.1f}", "min")
+    return with_unit(f"{seconds / HOUR:.2f}", "h")
 
 
 def _azimuth(scenario: Scenario, method: Method, top: float) -> Iterator[Part]:

@@ -1,9 +1,10 @@
-"""Flow charts of a method's decision and of its way back, with its own values (Liu 9, 10; Sun, figure 8)."""
+"""Flow charts of a method's decision and of its way back, with its own values (Liu 9, 10; Sun, figure 8 and five states)."""
 
 from typing import NamedTuple
 
 from navcore.foundation.text import Text
 from navcore.law.policy.adaptive import Adaptive
+from navcore.law.policy.states import States
 from navcore.law.policy.variation import Variation
 from navcore.law.switching.ramp import Ramp
 from navcore.law.switching.step import Step
@@ -48,6 +49,8 @@ def rows(method: Method) -> tuple[Row, ...]:
             found += _ramp(method.switching)
     if isinstance(method.policy, Adaptive) and isinstance(method.switching, Step):
         found += _adaptive(method.policy, method.switching)
+    if isinstance(method.policy, States):
+        found += (_states(method.policy),)
     return found
 
 
@@ -113,6 +116,29 @@ def _adaptive(policy: Adaptive, switching: Step) -> tuple[Row, ...]:
             ),
             Text("Where it is the same, the network stays as it is."),
         ),
+    )
+
+
+def _states(policy: States) -> Row:
+    """Sun's five states (Sun 2017, section 1); their rule is ours."""
+    return Row(
+        Text("Which of the five states (Sun, section 1)"),
+        (
+            Item(Text("mean of |a|"), Text("≤ {limit} m/s²?", limit=number(policy.limit_mps2)), asks=True),
+            Item(
+                "|V_r - V_c|",
+                Text(
+                    "≤ {limit} m/s for {returns} s?",
+                    limit=number(policy.difference_mps),
+                    returns=number(policy.return_s),
+                ),
+                asks=True,
+            ),
+            Item(Text("external damping")),
+            Item(Text("no manoeuvre"), Text("for {settled} s?", settled=number(policy.settled_s)), asks=True),
+            Item(Text("the azimuth too"), Text("whole damping")),
+        ),
+        Text("No at the first: undamped; at the second: internal damping; at the third: horizontal damping."),
     )
 
 

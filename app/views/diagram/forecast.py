@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from navcore.averaging.forecast import base_motion
+from navcore.averaging.forecast import GUARD, THRESHOLD_SIGMA, base_motion
 from navcore.averaging.plan import Plan
 from navcore.averaging.record import sensed_at_rest, standing_signals
 from navcore.engine.drivers.averaging import plan_of
@@ -12,9 +12,10 @@ from navcore.foundation.units import DEG_PER_HOUR, HOUR, MICRO_G
 from schuler_bench.plots import style
 from schuler_bench.plots.svg_axes import Box, Curve, axes, key, word
 from schuler_bench.plots.units import number
+from schuler_bench.views.diagram.blocks import ahead_words
 from schuler_bench.views.diagram.membership import picture
 
-WIDTH, HEIGHT = 780, 380
+WIDTH, HEIGHT = 780, 412
 _LEFT, _RIGHT = (54.0, 300.0), (430.0, 336.0)
 """Left edge and width of the columns: the record, and what came of the forecast."""
 _ROWS, _ROW = (52.0, 222.0), 110.0
@@ -69,7 +70,24 @@ def forecast_svg(run: Run, index: int) -> str:
             unit=sign,
         )
         parts.append(word(_RIGHT[0] + _RIGHT[1], top + _ROW + 34.0, told, "end"))
+    parts += [word(4.0, HEIGHT - 22.0, _rule()), word(4.0, HEIGHT - 5.0, _ahead(plan))]
     return picture(WIDTH, HEIGHT, _TOLD, parts)
+
+
+def _rule() -> str:
+    """When a second of the record counts as a motion of the base."""
+    return Text(
+        "A second is left out where a gyro turns by more than {sigma} σ off its median, and {guard} s "
+        "around it.",
+        sigma=number(THRESHOLD_SIGMA),
+        guard=GUARD,
+    )
+
+
+def _ahead(plan: Plan) -> str:
+    """How far each copy runs on the forecast."""
+    leads = ", ".join(ahead_words(ahead) for ahead in plan.copies.ahead_s[1:])
+    return Text("The copies run ahead on this forecast by {leads}.", leads=leads)
 
 
 def _record(plan: Plan, perfect: np.ndarray, columns: slice, unit: float, box: Box) -> str:

@@ -5,7 +5,7 @@ from functools import singledispatch
 
 from navcore.foundation.text import Text
 from schuler_bench.plots import style
-from schuler_bench.views.diagram.blocks import (
+from schuler_bench.views.diagram.parts import (
     WIDTH,
     Block,
     Diagram,
@@ -17,7 +17,7 @@ from schuler_bench.views.diagram.blocks import (
     Word,
 )
 
-_INDEX = re.compile(r"_(U\d|[A-Za-z]+\d?)")
+_INDEX = re.compile(r"_(U\d|[A-Za-z]+\d?)|\^([bn])\b")
 _SIGNS = {"left": (-16.0, -6.0), "top": (7.0, -12.0), "bottom": (7.0, 20.0)}
 _STYLE = (
     ".sb-d text{font-size:12px;fill:#243B53}.sb-d .m{fill:#52667A;font-size:12px}"
@@ -198,15 +198,28 @@ def _(part: Switch, pen: _Pen) -> str:
     )
 
 
+def _shifted(letters: str, low: bool) -> str:
+    """An index, or a raised letter."""
+    return Text(
+        '<tspan dy="{to:g}" font-size="75%">{letters}</tspan><tspan dy="{back:g}">&#8203;</tspan>',
+        letters=letters,
+        to=3.5 if low else -4.5,
+        back=-3.5 if low else 4.5,
+    )
+
+
 def _rich(text: str) -> str:
-    """Text of a label with its indices lowered."""
+    """Text of a label with its indices lowered, and with raised names of axes."""
     if not _INDEX.search(text):
         return Text("{text:html}", text=text)
-    parts = _INDEX.split(text)
-    marks = [
-        Text("<tspan>{part:html}</tspan>", part=part)
-        if k % 2 == 0
-        else Text('<tspan dy="3.5" font-size="75%">{part}</tspan><tspan dy="-3.5">&#8203;</tspan>', part=part)
-        for k, part in enumerate(parts)
-    ]
+    marks: list[str] = []
+    end = 0
+    for found in _INDEX.finditer(text):
+        low, high = found.groups()
+        marks += [
+            Text("<tspan>{part:html}</tspan>", part=text[end : found.start()]),
+            _shifted(low or high, bool(low)),
+        ]
+        end = found.end()
+    marks.append(Text("<tspan>{part:html}</tspan>", part=text[end:]))
     return Text.joined("", marks)

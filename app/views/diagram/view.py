@@ -7,10 +7,11 @@ from navcore.mechanization.recorder import DAMPED_COLUMN, XI_COLUMN
 from schuler_bench.plots import style
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.view import Frame, PictureView, Tab
-from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.blocks import diagram
 from schuler_bench.views.diagram.flow import flow_svg
 from schuler_bench.views.diagram.forecast import forecast_svg
 from schuler_bench.views.diagram.membership import membership_svg
+from schuler_bench.views.diagram.parts import State
 from schuler_bench.views.diagram.svg import diagram_svg
 
 _LOOK_PX = 60

@@ -102,9 +102,7 @@ class SwitchingParameters(Parameters):
 
     def _begins_anew(self, policy: PolicyParameters) -> Fault:
         return self._refused(
-            Text(
-                'must be hard or keep with policy "{id}", which sets the gains', id=policy.id
-            )
+            Text('must be hard or keep with policy "{id}", which sets the gains', id=policy.id)
         )
 
     def _refused(self, allowed: str) -> Fault:
