@@ -24,6 +24,7 @@ from navcore.law.records import (
     FEEDBACK,
     FREE,
     HISTORY,
+    INTERNAL,
     MAX_STATES,
     NETWORK,
     PARAMETERS,
@@ -113,7 +114,7 @@ def prepare_law(
         LAW_STATE,
         xi_target=xi,
         epoch=-1,
-        internal=damping == "internal",
+        internal=CODES[damping] == INTERNAL,
         policies={policy.id: policy.remembered()},
     )
     p["tan_half"] = math.tan(0.5 * omega_s * law_step_s)

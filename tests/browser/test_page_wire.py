@@ -231,6 +231,8 @@ POLICIES = {
     "variation": ("n_s", "t0_s", "a", "b", "c", "count"),
     "adaptive": ("lowpass_s",),
     "schedule": ("duration_s",),
+    "mobility": ("sigma_steady", "sigma_moving", "high_mps2"),
+    "states": ("limit_mps2", "difference_mps"),
 }
 SWITCHINGS = {
     "hard": (),
@@ -267,7 +269,9 @@ def scenario(policy: dict[str, Any], network: dict[str, Any]) -> Scenario:
 @pytest.mark.parametrize("id", POLICIES)
 def test_every_slider_of_a_policy_moves_the_view(wire: Wire, id: str) -> None:
     front = WIDE.replace("Errors", "Switching")
-    wire.put(scenario({"id": id}, COMPASS if id == "schedule" else UNITY), selected=1, front=front)
+    wire.put(
+        scenario({"id": id}, COMPASS if id in ("schedule", "mobility") else UNITY), selected=1, front=front
+    )
     for name in POLICIES[id]:
         assert wire.slide(f"policy.{name}")[CURVES], name
 

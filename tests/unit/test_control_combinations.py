@@ -85,8 +85,8 @@ def scenario(method: dict[str, Any], **run: Any) -> Scenario:
         ),
         (
             {"network": {"id": "compass"}, "policy": {"id": "schedule"}, "switching": {"id": "bumpless"}},
-            "switching.id = 'bumpless': must be hard or keep with policy \"schedule\", whose gains begin "
-            "anew at each start",
+            "switching.id = 'bumpless': must be hard or keep with policy \"schedule\", which sets the "
+            "gains",
         ),
         (
             {"network": {"id": "compass"}, "policy": {"id": "schedule", "from": [50.0, 1.0, 1.0]}},

@@ -62,7 +62,9 @@ def test_what_is_monitored_is_named_with_its_unit_and_thresholds():
     for id, kind in POLICIES.items():
         block = kind.model_validate({"id": id})
         assert all(limit.unit == block.measure.unit for limit in block.limits()), id
-        assert bool(block.limits()) == (id in ("threshold", "yaw_rate", "acceleration", "variation"))
+        assert bool(block.limits()) == (
+            id in ("threshold", "yaw_rate", "acceleration", "variation", "mobility")
+        )
     shown = {limit.name: limit.value for limit in Variation().limits()}
     assert shown == {"a": 0.25, "b": 0.35, "c": 0.45}
 

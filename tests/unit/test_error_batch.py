@@ -41,7 +41,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "gyrocompass": {"network": COMPASS, "gyrocompass": {"sigma": 0.002, "xi": 0.7}},
     **{
         f"{policy} and {switching}": {
-            "network": COMPASS if policy == "schedule" else {"id": "unity2", "zeta": 0.5},
+            "network": COMPASS if policy in ("schedule", "mobility") else {"id": "unity2", "zeta": 0.5},
             "policy": {"id": policy},
             "switching": {"id": switching},
         }

@@ -142,7 +142,8 @@ def test_legend_names_thresholds_and_the_wish_and_leaves_the_methods_to_the_stri
 
 
 def test_every_policy_can_be_drawn() -> None:
-    networks = {"adaptive": NETWORK, "schedule": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
+    compass = {"id": "compass", "sigma": 0.0088, "xi": 0.7}
+    networks = {"adaptive": NETWORK, "schedule": compass, "mobility": compass}
     for id in set(POLICIES) - {"constant"}:
         run = run_of(reference=LOG, method=[method(id, {"id": id}, networks.get(id))])
         plots = switching_plots(run)

@@ -55,7 +55,7 @@ FIELD = {"network": "id", "motion": "kind", "policy": "id", "switching": "id"}
 ENTRIES = [(part, name) for part, members in REGISTRIES.items() for name in members]
 FILES = {"file", "map"}
 """Named in the scenario's text; recordings are also chosen in the tab Files, maps are not yet."""
-OWN_NETWORK = {"schedule": "compass", "adaptive": "unity2"}
+OWN_NETWORK = {"schedule": "compass", "mobility": "compass", "adaptive": "unity2"}
 """Networks of the policies that do not go with any network that can be re-tuned."""
 MOVING = {"swing": DENG_SWING, "legs": DRIVE, "profile": MANOEUVRES, "waves": SEA}
 """Motions whose defaults rest."""

@@ -1,4 +1,4 @@
-"""Flow charts of a method's decision and of its way back, with its own values (Liu 9, 10; Sun, figure 8 and five states)."""
+"""Flow charts of a decision and of its way back, with the method's values (Liu 9, 10; Sun 8, five states)."""
 
 from typing import NamedTuple
 
