@@ -81,7 +81,9 @@ def steer(law, c, up):
         u = 0.0 if external else -up.rate
         for i in range(p.azimuth_order):
             s.x[U, i] = s.azimuth.steady[i] * u
-    u = _difference(law, up) if external else -up.rate
+    u = -up.rate
+    if external:
+        u = _difference(law, up)
     if s.action == REST:
         for i in range(p.azimuth_order):
             s.x[U, i] = s.azimuth.steady[i] * u
