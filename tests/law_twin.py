@@ -87,7 +87,7 @@ class TwinLaw:
     def _form(self, xi: float) -> Form:
         if self.policy.id == "schedule":
             return self._gains(*getattr(self.policy, "from"))
-        if self.policy.id == "mobility":
+        if self.policy.id == "mobility" and isinstance(self.network, CompassNetwork):
             return self._gains(*self.network.gains(self.omega_s))
         if self.tunes:
             self.tuned = xi

@@ -88,6 +88,9 @@ def test_the_values_are_those_in_force() -> None:
     compass = next(i for i, method in enumerate(gains.method) if method.network.id == "compass")
     values = gains.method[compass].network.values(gains.omega_s)
     assert f"{values['k1']:.3g}" in words_of(diagram(gains, compass))
+    own = METHODS["gyrocompass"] | {"gyrocompass": {"k3": 4e-12}}
+    assert "K_U3 4×10⁻¹²" in words_of(diagram(scenario(own), 0))
+    assert "K_U4 " not in words_of(diagram(scenario(own), 0))
     slow = words_of(diagram(scenario(METHODS["whole"] | {"azimuth": {"id": "unity2", "zeta": 0.77}}), 0))
     assert "1 − Y(s)" in slow and "ζ 0.77" in slow and "ζ 0.5" in slow
 

@@ -247,9 +247,16 @@ def _azimuth(scenario: Scenario, method: Method, top: float) -> Iterator[Part]:
             "K_U3/(Ω cos L (s + K_U4))",
             Text("gyrocompass"),
             f"σ {number(own.sigma, 3)} 1/s, ζ {number(own.xi, 3)}",
+            *_pairs(
+                [
+                    f"K_U{k} {number(gain, 3)}"
+                    for k in range(1, 5)
+                    if (gain := getattr(own, f"k{k}")) is not None
+                ]
+            ),
         )
         yield Line(((212, low), (264, low)), own=True)
-        yield Block(264, low - 20, 178, 56, lines, METHOD, own=True)
+        yield Block(264, low - 20, 178, 26.0 + 15.0 * (len(lines) - 1), lines, METHOD, own=True)
         yield Line(((442, low), (480, low), (480, y + 9)), own=True)
         yield Word(500, low - 26, "w", "start")
         return
