@@ -1,5 +1,6 @@
 """Share of seeds on which a method meets all limits of a scenario (design.md, from limits to designs)."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +19,9 @@ from navcore.quantities import HEADING, QUANTITIES, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+
+_NEAR = 0.1
+"""Relative distance from a limit within which a seed counts in part."""
 
 
 @dataclass(frozen=True)
@@ -85,8 +89,16 @@ class Share:
     @property
     def setting(self) -> str:
         """Parameters in words, and on how many seeds it diverges."""
-        fields = {} if self.method.undamped else self.method.network.model_dump(exclude_none=True)
+        network = None if self.method.undamped else self.method.network
+        blocks = {"": network, "azimuth.": self.method.azimuth, "gyrocompass.": self.method.gyrocompass}
+        fields = {
+            f"{block}{name}": value
+            for block, settings in blocks.items()
+            if settings is not None
+            for name, value in settings.model_dump(exclude_none=True).items()
+        }
         numbers = [f"{name} = {value:.4g}" for name, value in fields.items() if isinstance(value, float)]
+        numbers += [f'{name} = "{fields[name]}"' for name in ("realisation",) if name in fields]
         words = ", ".join(numbers) or Text("no parameter")
         if not self.diverged:
             return words
@@ -179,6 +191,30 @@ def shares_of(
     return tuple(
         share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)
     )
+
+
+def smooth_share(setting: Setting, outcomes: Sequence[Outcome]) -> float:
+    """Share of the seeds that meet all limits, a seed near its limit counting in part.
+
+    It changes with each parameter, and by less chance than the share itself: a search goes by it.
+
+    Parameters
+    ----------
+    setting, outcomes
+        As of `share_of`.
+    """
+    scenario, largest = setting.ship.scenario, np.zeros(len(outcomes))
+    ended = np.array([one.ended for one in outcomes])
+    for one in scenario.requirement:
+        values = _values(setting, one, outcomes)
+        if QUANTITIES[one.quantity].over and one.share is None:
+            said = judge(one, values, ended, scenario.run.duration_h)
+            values = np.full(len(values), math.inf if said.value is None else said.value)
+        ratios = [one.times(value) if math.isfinite(value) else math.inf for value in values.tolist()]
+        largest = np.maximum(largest, ratios)
+    largest[~ended] = math.inf
+    with np.errstate(divide="ignore", over="ignore"):
+        return float(np.mean(1.0 / (1.0 + largest ** (1.0 / _NEAR))))
 
 
 def _values(setting: Setting, one: Requirement, outcomes: Sequence[Outcome]) -> np.ndarray:

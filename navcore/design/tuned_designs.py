@@ -1,9 +1,10 @@
 """The best setting of each network under a scenario's requirements, for `navcore.design.designs`.
 
-A share over seeds is too slow to search by. Each network is searched by the covariance along the run: the
-largest of the quantities that it foretells, each over its limit. Of the settings that come out best, of the
-network's defaults and of the scenario's own methods the one with the largest share on seeds of the search is
-taken.
+Each network is tried in its forms (`navcore.design.forms`): level, in each realisation; whole, with the
+scenario's azimuth networks or one of the catalogue; with the scenario's gyrocompasses. Of the settings that a
+search by shares finds (`navcore.design.share_search`), of the defaults and of the scenario's own methods the
+one with the largest share on other seeds is taken. Over several scenarios the covariance along the run is
+searched instead: the largest of the quantities that it foretells, each over its limit.
 """
 
 import math
@@ -13,24 +14,28 @@ from typing import Any
 
 import numpy as np
 
+from navcore.design.forms import IDS, Form, forms_of
 from navcore.design.measures import Setting, measure, read_objective
-from navcore.design.pareto import LEFT_OUT
 from navcore.design.search import REFUSED, Effort, Search
+from navcore.design.share_search import best_settings, coarse
 from navcore.design.shares import Share, shares_of
 from navcore.design.ship import Ship
 from navcore.design.vary import read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
+from navcore.engine.load import estimated_seconds
 from navcore.engine.readings import BAND
 from navcore.foundation.errors import InputError
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
-from navcore.networks import NETWORKS
 from navcore.quantities import HEADING, POSITION, QUANTITIES, TILT, VELOCITY, Quantity, value_unit
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
 
-SEARCH_SEEDS = 16
+SEARCH_SEEDS, FEW_SEEDS = 160, 16
+"""Of the choice among the settings that a search has found, and of one over several scenarios."""
+_CHOICE_S = 30.0
+"""Processor time of that choice, about."""
 _CANDIDATES = 3
 INTERVALS = 96
 """Of a run: coarse, for what a search sees is only a guide."""
@@ -80,15 +85,9 @@ def kalman(scenario: Scenario) -> tuple[Method, ...]:
 
 
 def held_as_set(scenario: Scenario) -> tuple[Method, ...]:
-    """Give the scenario's own methods with an azimuth network or a gyrocompass, which no search makes."""
+    """Give the scenario's own methods with an azimuth network or a gyrocompass, as they stand."""
     held = (one for one in scenario.method if one.azimuth.id != "none" or one.gyrocompass is not None)
     return tuple(held)
-
-
-def default_method(scenario: Scenario, name: str) -> Method:
-    """Give a network with its defaults as a method; raises ValueError where a parameter has none."""
-    damping = "external" if scenario.reference.kind != "none" else "internal"
-    return Method.model_validate({"name": name, "damping": damping, "network": {"id": name}})
 
 
 def tuned_methods(
@@ -96,41 +95,69 @@ def tuned_methods(
     progress: Callable[[float], None],
     cancelled: Callable[[], bool] | None,
     spread: Spread = NO_SPREAD,
+    ids: Sequence[str] = IDS,
 ) -> tuple[list[Method], list[tuple[str, str]]]:
     """Tune every network of the catalogue; also say for which there is no method, and why.
 
-    With a spread the share that counts is that of all its scenarios and of the scenario itself.
+    Parameters
+    ----------
+    scenario : Scenario
+        With limits.
+    progress, cancelled : callable
+        Told the fraction done, 0..1; asked often.
+    spread : Spread
+        With one the share that counts is that of all its scenarios and of the scenario itself.
+    ids : sequence of str
+        Networks that are tuned.
     """
-    ids = [name for name in NETWORKS if name not in LEFT_OUT]
-    candidates: list[tuple[str, list[Method]]] = []
+    candidates: dict[str, list[Method]] = {}
     left_out: list[tuple[str, str]] = []
     for k, name in enumerate(ids):
         if cancelled is not None and cancelled():
             left_out += [(other, Text("the search was stopped before it")) for other in ids[k:]]
             break
-        found, reason = _candidates(scenario, name, cancelled, spread)
-        if found:
-            candidates.append((name, found))
-        else:
+        reason = Text("unstable as it is sampled")
+        try:
+            forms = forms_of(scenario, name)
+        except InputError as error:
+            forms, reason = [], "; ".join(fault.allowed for fault in error.faults)
+        except ValueError as error:
+            forms, reason = [], str(error)
+        for j, form in enumerate(forms):
+            found = _candidates(form, cancelled, spread)
+            if found:
+                candidates.setdefault(form.name, []).extend(found)
+            elif not j:
+                ship = Ship(form.scenario, True, INTERVALS, drawn=True)
+                reason = Setting(ship, form.method).instability or reason
+            progress(0.7 * (k + (j + 1) / len(forms)) / len(ids))
+        if name not in candidates:
             left_out.append((name, reason))
-        progress(0.7 * (k + 1) / len(ids))
-    methods = [method for _, found in candidates for method in found]
-    numbers = range(SEARCHED, SEARCHED + SEARCH_SEEDS)
-    everywhere = scenario, *spread.scenarios
+    methods = [method for found in candidates.values() for method in found]
+    everywhere = (scenario, *spread.scenarios) if spread.scenarios else (coarse(scenario),)
+    numbers = range(SEARCHED, SEARCHED + _seeds(everywhere[0], methods, spread))
     shares: list[tuple[Share, ...]] = []
     for k, one in enumerate(everywhere):
         span = 0.3 / len(everywhere)
         part = part_of(progress, 0.7 + k * span, 0.7 + (k + 1) * span)
         results = outcomes(one, methods, numbers, part, cancelled)
         if not results:
-            return [found[0] for _, found in candidates], left_out
+            return [found[0] for found in candidates.values()], left_out
         shares.append(shares_of(Ship(one, True, INTERVALS, drawn=True), methods, results))
     best, at = [], 0
-    for _, found in candidates:
+    for found in candidates.values():
         places = range(at, at + len(found))
         best.append(methods[min(places, key=lambda i: _order(spread, [row[i] for row in shares]))])
         at += len(found)
     return best, left_out
+
+
+def _seeds(scenario: Scenario, methods: Sequence[Method], spread: Spread) -> int:
+    """Seeds of the choice: fewer where their runs take long."""
+    if spread.scenarios or not methods:
+        return FEW_SEEDS
+    each_s = estimated_seconds(scenario.model_copy(update={"method": tuple(methods)}))
+    return max(FEW_SEEDS, min(SEARCH_SEEDS, int(_CHOICE_S / max(each_s, 1e-9))))
 
 
 def _order(spread: Spread, shares: Sequence[Share]) -> tuple[float, float, float]:
@@ -139,40 +166,23 @@ def _order(spread: Spread, shares: Sequence[Share]) -> tuple[float, float, float
     return -spread.of_shares(met), -float(np.mean(met)), spread.of_ratios(ratios)
 
 
-def _candidates(
-    scenario: Scenario, name: str, cancelled: Callable[[], bool] | None, spread: Spread = NO_SPREAD
-) -> tuple[list[Method], str]:
-    """Settings of a network worth a run, the most promising one first; else why there is none."""
-    try:
-        default = default_method(scenario, name)
-        other = scenario.model_copy(update={"method": (default,)}).with_sensors()
-        faults = list(other.faults())
-        if faults:
-            raise InputError(faults)
-    except InputError as error:
-        return [], "; ".join(fault.allowed for fault in error.faults)
-    except ValueError as error:
-        return [], str(error)
-    default = other.method[0]
-    own = [
-        m for m in scenario.method if not m.undamped and m.network.id == name and m.damping == default.damping
-    ]
-    present = [default, *(default.model_copy(update={"network": one.network}) for one in own)]
-    fields = default.network.design_fields()
-    if fields:
-        present += _searched(other, fields, cancelled, NO_SPREAD)
-    if fields and spread.scenarios:
-        present += _searched(other, fields, cancelled, spread)
-    ship = Ship(other, True, INTERVALS, drawn=True)
-    stable = {method.network: method for method in present if not Setting(ship, method).instability}
-    if not stable:
-        return [], Setting(ship, default).instability
-    ranked = sorted(stable.values(), key=lambda method: _largest_ratio(Setting(ship, method)))
-    if spread.scenarios:
+def _candidates(form: Form, cancelled: Callable[[], bool] | None, spread: Spread = NO_SPREAD) -> list[Method]:
+    """Settings of a form worth a run, the most promising one first; none where all are unstable."""
+    ship = Ship(form.scenario, True, INTERVALS, drawn=True)
+    present = [form.method, *form.own]
+    if form.fields and spread.scenarios:
+        present += _searched(form.scenario, form.fields, cancelled, NO_SPREAD)
+        present += _searched(form.scenario, form.fields, cancelled, spread)
+    elif form.fields:
+        present += best_settings(form, present, lambda method: ratio_at(ship, method), cancelled)
+    stable = [one for one in dict.fromkeys(present) if not Setting(ship, one).instability]
+    ranked = sorted(stable, key=lambda method: _largest_ratio(Setting(ship, method)))
+    if spread.scenarios and ranked:
         ships = [ship, *(Ship(one, True, INTERVALS, drawn=True) for one in spread.scenarios)]
         robust = sorted(ranked, key=lambda m: spread.of_ratios([ratio_at(one, m) for one in ships]))
         ranked = list(dict.fromkeys((robust[0], ranked[0], *robust[1:])))
-    return ranked[:_CANDIDATES], ""
+        return ranked[:_CANDIDATES]
+    return ranked
 
 
 def ratio_at(ship: Ship, method: Method) -> float:
@@ -184,7 +194,7 @@ def ratio_at(ship: Ship, method: Method) -> float:
 def _searched(
     scenario: Scenario, fields: Sequence[str], cancelled: Callable[[], bool] | None, spread: Spread
 ) -> Iterator[Method]:
-    varied = read_varied(scenario, [f"method.0.network.{field}" for field in fields])
+    varied = read_varied(scenario, [f"method.0.{field}" for field in fields])
     search = _ByLimits(scenario, varied, spread)
     search.cancelled = cancelled
     search.run(_EFFORT, None)

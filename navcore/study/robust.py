@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from navcore.design.forms import default_method
 from navcore.design.judged import left_out_lines
 from navcore.design.measures import TUNING_INTERVALS
 from navcore.design.shares import Share, require_limits, shares_of
@@ -16,7 +17,6 @@ from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import (
     INTERVALS,
     Spread,
-    default_method,
     held_as_set,
     kalman,
     ratio_at,

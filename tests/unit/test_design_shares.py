@@ -185,6 +185,7 @@ def test_what_cannot_be_judged_is_refused(blocks: dict[str, Any], words: str) ->
     assert words in str(error.value)
 
 
+@pytest.mark.slow
 def test_networks_are_tuned_for_the_largest_share() -> None:
     """Every network and the filter; a tuned one meets the limits more often than its defaults do."""
     scenario = ship(method=SHIP["method"][:1])
@@ -199,7 +200,7 @@ def test_networks_are_tuned_for_the_largest_share() -> None:
     assert progress[-1] == pytest.approx(1.0) and sorted(progress)[0] > 0.0
 
 
-@pytest.mark.parametrize("part", [0.2, 0.7])
+@pytest.mark.parametrize("part", [0.2, pytest.param(0.7, marks=pytest.mark.slow)])
 def test_a_design_that_is_stopped_keeps_what_it_has(part: float) -> None:
     """While it tunes: the networks so far on a few seeds; while it runs: all methods on fewer seeds."""
     done = [0.0]
