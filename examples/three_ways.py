@@ -1,7 +1,7 @@
 """Three ways through the bench, on the voyage of ``examples/voyage``: ``python examples/three_ways.py``.
 
-An engineer with a ship's recordings asks which damping to take. A researcher asks what a network does with such
-a log. A systems engineer asks what would have to be better. Each number of one step is that of the next.
+An engineer with a ship's recordings asks which damping to take. A researcher asks what a network does with
+such a log. A systems engineer asks what would have to be better. A number of one step is that of the next.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
 """Make the recordings of a voyage whose truth is known: ``python examples/voyage/make.py [FOLDER]``.
 
-A ship sails four hours and changes course and speed each ten to twenty minutes. Its log errs as `PLANTED` says,
-its receiver by a metre. `schuler fit log.csv --track track.csv` finds the planted values.
+A ship sails four hours and changes course and speed each ten to twenty minutes. Its log errs as `PLANTED`
+says, its receiver by a metre. `schuler fit log.csv --track track.csv` finds the planted values.
 """
 
 import sys

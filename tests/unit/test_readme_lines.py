@@ -42,5 +42,5 @@ def test_a_line_of_the_readme_runs(
 
 
 def test_the_lines_name_the_tutorials_scenario_and_all_commands_that_it_teaches() -> None:
-    assert len(_lines()) >= 12 and sum("my.toml" in line for line in _lines()) == 2
+    assert len(_lines()) >= 12 and sum("my.toml" in line for line in _lines()) >= 2
     assert "`my.toml`" in _tutorial()
