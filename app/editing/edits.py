@@ -190,10 +190,8 @@ def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenari
     data = scenario.canonical()
     behind = index >= len(scenario.method) or scenario.method[index].undamped
     others = [m["name"] for i, m in enumerate(data["method"]) if behind or i != index]
-    method = frozen_method(method, scenario.omega_s)
-    block = method.model_dump(mode="json", by_alias=True, exclude_none=True)
-    block["name"] = free_name(method.label(), others)
-    at = index + behind
+    taken = frozen_method(method, scenario.omega_s).model_dump(mode="json", by_alias=True, exclude_none=True)
+    block, at = taken | {"name": free_name(method.label(), others)}, index + behind
     data["method"][at : at + (not behind)] = [block]
     return Scenario.parse(data), at
 

@@ -121,6 +121,7 @@ def exported(
     target: str = "c",
     rate_hz: float | None = None,
     single: bool = False,
+    outside: bool = False,
     prefix: str = "schuler_law",
 ) -> Exported:
     """Export the law of a method.
@@ -137,6 +138,8 @@ def exported(
         Calls a second; default that of the scenario's law.
     single : bool
         Numbers of single precision; what that does is measured on the vectors.
+    outside : bool
+        A box beside an INS in place of a law in its loop.
     prefix : str
         Of the names in the files.
 
@@ -147,7 +150,7 @@ def exported(
     """
     require_prefix(prefix)
     subject = subject_of(scenario, method, rate_hz)
-    form = form_of(subject)
+    form = form_of(subject, outside)
     rounding = rounding_of(form) if single else None
     bounds = target_c.double_bounds(form) if rounding is None else rounding.bounds
     files = _TARGETS[target](form, prefix, single, bounds)

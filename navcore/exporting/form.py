@@ -31,6 +31,7 @@ ABOUT = {
     "damped": "1 while the law damps",
     "v_out_e_mps": "velocity to be given out, east",
     "v_out_n_mps": "velocity to be given out, north",
+    "lon_rad": "computed longitude",
     "off_v_e_mps": "to be taken off the velocity at once, east",
     "off_v_n_mps": "to be taken off the velocity at once, north",
     "off_lat_rad": "to be taken off the latitude at once",

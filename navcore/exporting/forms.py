@@ -7,6 +7,7 @@ from navcore.exporting.averaging_form import averaging_form
 from navcore.exporting.filter_form import filter_form
 from navcore.exporting.form import Form
 from navcore.exporting.law_form import law_form
+from navcore.exporting.outside_form import outside_form
 from navcore.exporting.subject import Subject
 
 FORMS: dict[Carrying, Callable[[Subject], Form]] = {
@@ -17,6 +18,6 @@ FORMS: dict[Carrying, Callable[[Subject], Form]] = {
 """How a form is made, by the way a method is carried out."""
 
 
-def form_of(subject: Subject) -> Form:
-    """Make the form of a method."""
-    return FORMS[subject.method.kind.carrying](subject)
+def form_of(subject: Subject, outside: bool = False) -> Form:
+    """Make the form of a method; ``outside`` for a box beside an INS."""
+    return outside_form(subject) if outside else FORMS[subject.method.kind.carrying](subject)

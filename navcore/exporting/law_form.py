@@ -13,6 +13,9 @@ from navcore.exporting.values import Group
 from navcore.exporting.vectors import inputs_along, reference_of
 from navcore.foundation.records import new_record
 from navcore.law.law import Law
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+from navcore.sensors.base import ReferenceErrors
 
 
 def law_form(subject: Subject, given: np.ndarray | None = None) -> Form:
@@ -25,19 +28,10 @@ def law_form(subject: Subject, given: np.ndarray | None = None) -> Form:
     given : ndarray, shape (calls, inputs), optional
         Inputs of the vectors; default those along its scenario.
     """
-    scenario, method = subject.scenario, subject.method
-    law, reads, hold_s = subject.law(), method.reads_log, 0.0
-    period, hold = 1, 0
-    if reads:
-        log = reference_of(subject)
-        hold_s, hold = float(log.hold_s), hold_calls(log.hold_s, subject.step_s)
-        interval = float(np.median(np.diff(log.time_s))) if len(log.time_s) > 1 else subject.step_s
-        period = max(1, int(interval / subject.step_s + 1e-6))
-    earth = scenario.earth
-    parameters = new_record(
-        LOG_PARAMETERS, reads=reads, period=period, hold=hold, e2=earth.e2, height=scenario.site.height_m
-    )
-    state = new_record(LOG_STATE, age=hold + 1)
+    scenario, method, law = subject.scenario, subject.method, subject.law()
+    log = reference_of(subject) if method.reads_log else None
+    reading = reading_of(scenario, method, log, subject.step_s)
+    parameters, state = reading
     roots = {"s": law.s.copy(), "ring": law.ring.copy(), "log": state.copy()}
     places = place_of("s", law.s), place_of("ring", law.ring)
     arguments = [
@@ -47,9 +41,40 @@ def law_form(subject: Subject, given: np.ndarray | None = None) -> Form:
     ]
     program = read_program(step, roots, arguments)
     given = inputs_along(subject) if given is None else given
-    expected = replayed(law, Reading(parameters, state), given)
+    expected = replayed(law, reading, given)
     outputs = OUTPUTS[: _without_own_velocity(program)]
-    return Form(subject, program, INPUTS, outputs, given, expected[:, : len(outputs)], hold_s)
+    return Form(
+        subject,
+        program,
+        INPUTS,
+        outputs,
+        given,
+        expected[:, : len(outputs)],
+        0.0 if log is None else log.hold_s,
+    )
+
+
+def reading_of(scenario: Scenario, method: Method, log: ReferenceErrors | None, step_s: float) -> Reading:
+    """Return how the log comes to a law that is called every ``step_s`` seconds.
+
+    Parameters
+    ----------
+    scenario, method : Scenario, Method
+        As exported.
+    log : ReferenceErrors or None
+        The log along the scenario; None where there is none.
+    step_s : float
+        s.
+    """
+    period, hold = 1, 0
+    reads = log is not None and method.reads_log
+    if log is not None:
+        hold = hold_calls(log.hold_s, step_s)
+        interval = float(np.median(np.diff(log.time_s))) if len(log.time_s) > 1 else step_s
+        period = max(1, int(interval / step_s + 1e-6))
+    earth, height = scenario.earth, scenario.site.height_m
+    parameters = new_record(LOG_PARAMETERS, reads=reads, period=period, hold=hold, e2=earth.e2, height=height)
+    return Reading(parameters, new_record(LOG_STATE, age=hold + 1))
 
 
 def _without_own_velocity(program: Program) -> int:

@@ -53,6 +53,14 @@ class ExportQuestion(Question):
         label=Text("single precision"),
         help=Text("Numbers of single precision; what rounding does over the scenario is told."),
     )
+    outside: bool = option(
+        False,
+        label=Text("from outside"),
+        help=Text(
+            "A box beside an INS: its output and the log go in, the damped output comes out; in place of a "
+            "law in the loop."
+        ),
+    )
     name: str = option(
         "schuler_law",
         label=Text("name in the files"),
@@ -70,6 +78,7 @@ class ExportQuestion(Question):
             target=self.as_,
             rate_hz=self.rate,
             single=self.single,
+            outside=self.outside,
             prefix=self.name,
         )
         unless_stopped(cancelled)
