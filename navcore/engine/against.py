@@ -112,18 +112,15 @@ def _plot(time_s: np.ndarray, errors: np.ndarray) -> PlotSeries:
     """Curves that keep every extreme, two points a bin where the epochs are many."""
     if len(time_s) <= 2 * MAX_BINS:
         return PlotSeries(time_s, errors)
-    edges = np.linspace(0, len(time_s), MAX_BINS + 1).astype(int)
-    picked = [
-        np.sort(
-            [begin + np.argmin(errors[begin:end], axis=0), begin + np.argmax(errors[begin:end], axis=0)],
-            axis=0,
-        )
-        for begin, end in zip(edges, edges[1:], strict=False)
-    ]
-    values = np.concatenate([np.take_along_axis(errors, places, axis=0) for places in picked])
-    starts, length = time_s[edges[:-1]], np.diff(time_s[np.append(edges[:-1], len(time_s) - 1)])
-    times = np.column_stack([starts + 0.25 * length, starts + 0.75 * length]).ravel()
-    return PlotSeries(times, values)
+    width = math.ceil(len(time_s) / MAX_BINS)
+    room = -len(time_s) % width
+    times = np.pad(time_s, (0, room), mode="edge").reshape(-1, width)
+    binned = np.pad(errors, ((0, room), (0, 0)), mode="edge").reshape(-1, width, errors.shape[1])
+    places = np.sort([binned.argmin(axis=1), binned.argmax(axis=1)], axis=0)
+    both = np.take_along_axis(binned, np.moveaxis(places, 0, 1), axis=1)
+    length = times[:, -1] - times[:, 0]
+    at = np.column_stack([times[:, 0] + 0.25 * length, times[:, 0] + 0.75 * length])
+    return PlotSeries(at.ravel(), both.reshape(-1, errors.shape[1]))
 
 
 def _spans(

@@ -7,6 +7,7 @@ import numpy as np
 from navcore.averaging.lines import line_phases
 from navcore.engine.environment import Environment
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import KNOT
 from navcore.scenario.model import Scenario
@@ -63,17 +64,24 @@ def require_units(scenario: Scenario, env: Environment) -> None:
 
 
 def already_damped(scenario: Scenario, env: Environment) -> str:
+    """Say that the INS seems to have been damped when it was recorded; kept from run to run."""
+    files = recorded_state(scenario.ins), recorded_state(scenario.reference)
+    key = "already damped", files, scenario.ins, scenario.reference, scenario.run, scenario.earth.name
+    return kept(key, lambda: _already_damped(scenario, env))
+
+
+def _already_damped(scenario: Scenario, env: Environment) -> str:
     """Say that the INS seems to have been damped when it was recorded; empty where nothing says so.
 
     A free INS swings against its log with the Schuler period, in two lines that the Foucault effect parts.
     Where no line stands out from the frequencies beside it, something has damped it.
     """
     log, step_s = env.reference, scenario.run.step_s
-    kept = np.flatnonzero(log.valid)
-    if scenario.ins.damping.kind.uses_network or kept.size < _FEWEST:
+    chosen = np.flatnonzero(log.valid)
+    if scenario.ins.damping.kind.uses_network or chosen.size < _FEWEST:
         return ""
-    kept = kept[:: max(1, kept.size // _MOST)]
-    time_s = log.time_s[kept]
+    chosen = chosen[:: max(1, chosen.size // _MOST)]
+    time_s = log.time_s[chosen]
     periods = (time_s[-1] - time_s[0]) * scenario.omega_s / math.tau
     if periods < _LEAST_PERIODS:
         return ""
@@ -86,7 +94,8 @@ def already_damped(scenario: Scenario, env: Environment) -> str:
         phases = (times * plus, times * minus) if plus[-1] - minus[-1] > 0.5 * math.pi else (times * plus,)
         waves = [wave(phase) for phase in phases for wave in (np.cos, np.sin)]
         design = np.column_stack([*slow, *waves])
-        found, *_ = np.linalg.lstsq(design, log.error[kept], rcond=1e-9)
+        # by the normal equations: a few columns, and a thousand times less work
+        found, *_ = np.linalg.lstsq(design.T @ design, design.T @ log.error[chosen], rcond=1e-12)
         return float(np.sqrt(np.mean(np.sum((design[:, len(slow) :] @ found[len(slow) :]) ** 2, axis=1))))
 
     line = strength(1.0)

@@ -78,7 +78,9 @@ class Ran(Answer):
 
     def rows(self) -> Iterator[Table | str]:
         """Give what was run, the loops, RMS, largest and last errors of every method, verdicts, warnings."""
-        run, settings, site = self.run, self.run.scenario.run, self.run.scenario.site
+        run, settings = self.run, self.run.scenario.run
+        on_ins = self.run.scenario.on_ins and len(run.truth)
+        lat_deg = math.degrees(float(run.truth[0, 0])) if on_ins else run.scenario.site.lat_deg
         if head := ", ".join(part for part in (run.scenario.title, run.scenario.source) if part):
             yield head
         yield Text(
@@ -86,8 +88,8 @@ class Ran(Answer):
             fidelity=settings.fidelity,
             hours=settings.duration_h,
             earth=_EARTHS[settings.earth],
-            lat=abs(site.lat_deg),
-            side="N" if site.lat_deg >= 0 else "S",
+            lat=abs(lat_deg),
+            side="N" if lat_deg >= 0 else "S",
             seed=settings.seed,
             steps=run.computed_on,
         )
