@@ -45,6 +45,8 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
     if uploads.holding(IMU):
         return _on_recorded_imu(scenario, uploads)
     data, notes = scenario.canonical(), []
+    for block in ("ins", "truth"):
+        data.pop(block, None)
     speeds = uploads.holding(*_SPEEDS)
     if uploads.holding("position") and uploads.holding("heading"):
         data["motion"] = {"kind": "track", "file": uploads.holding("position", "heading", "attitude")}

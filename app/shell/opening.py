@@ -13,6 +13,7 @@ from navcore.scenario.file import load, presets, to_toml
 from schuler_bench.editing import edits
 from schuler_bench.http.limits import MIB
 from schuler_bench.session.history import first_editable
+from schuler_bench.session.own_ins import Taken, own_scenario
 from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.session import Session
 from schuler_bench.session.studying import LARGEST_TEXT, is_study, uploaded_study
@@ -163,6 +164,15 @@ class Opening:
             notes, tone = [Text("Not run on the files yet:"), *notices.fault_lines(error)], "warning"
         notices.tell(self._client, title, [*lines, *notes], tone)
         self._refresh()
+
+    def damp_ins(self, roles: Taken) -> None:
+        """Run on the output of a ship's own INS and its log."""
+        session = self._session
+        title = Text("The INS cannot be damped on these files; nothing was changed")
+        with session.lock, notices.told(self._client, title, self._refresh):
+            changed, notes = own_scenario(session.uploads, roles)
+            session.change(changed, None, origin=UPLOADED)
+            notices.tell(self._client, Text("My ship's INS"), notes, "info")
 
     def forget_files(self) -> None:
         """Remove the uploaded files, unless the scenario runs on them."""

@@ -9,6 +9,7 @@ from schuler_bench.session.session import Session
 from tests.browser.driver import Bench
 from tests.nmea import START, gga, rmc, stamped, write
 from tests.turning_ship import late_log
+from tests.unit.test_own_ins_faults import recorded
 
 BEGIN_S = (datetime(2024, 5, 1, 10, tzinfo=UTC) - START).total_seconds()
 SPAN_S = 300
@@ -78,6 +79,33 @@ def test_two_nmea_files_and_a_csv_are_brought_to_a_run(
     assert log.quantities == {"water"} and log.mapped
     assert log.details["quantities"]["water"]["start_utc"] == "2024-05-01T10:00:00.0Z"
     assert log.details["quantities"]["water"]["forward_kn"] == [10.0, 10.2]
+
+
+def test_my_ships_ins_is_damped_by_one_button(
+    fresh: Bench, session: Session, tmp_path: Path, pictures: Path
+) -> None:
+    fresh.tab("Files")
+    session.uploads.files.clear()  # of the other tests
+    files = recorded(tmp_path)
+    for kind, name in (("ins", "phins.csv"), ("log", "em-log.csv"), ("truth", "gnss.csv")):
+        fresh.upload({"name": name, "mimeType": "text/csv", "buffer": Path(files[kind]).read_bytes()})
+        fresh.wait_until(lambda name=name: name in session.uploads.files)
+        fresh.settle()
+        fresh.close_notices()
+    parts = fresh.page.locator("table", has_text="output of the INS").filter(has_text="gnss.csv")
+    words = "output of the INS phins.csv speed log em-log.csv reference gnss.csv"
+    assert parts.inner_text().split() == words.split()
+    with fresh.next_run():
+        fresh.button("Damp my INS").click()
+    assert "6.0 h" in fresh.notice("My ship's INS")
+    fresh.close_notices()
+    words = "With compass the largest position error would have been"
+    fresh.page.locator(".sb-note").filter(has_text=words).wait_for()
+    fresh.page.screenshot(path=pictures / "own-ins.png")
+    assert session.run is not None
+    assert [one.method.name for one in session.run.lines][:2] == ["as recorded", "free"]
+    fresh.choose("best by", "largest heading error")
+    fresh.page.locator(".sb-note").filter(has_text="largest heading error").wait_for()
 
 
 @pytest.fixture

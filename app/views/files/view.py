@@ -2,11 +2,13 @@
 
 from navcore.foundation.text import Text
 from schuler_bench.plots import style
+from schuler_bench.session.shown import Shown
 from schuler_bench.session.uploads import LARGEST_FILE, MIB, Upload
 from schuler_bench.shell import notices
 from schuler_bench.shell.opening import METRICS, SCENARIO
 from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.files.columns import Columns
+from schuler_bench.views.files.own_ins import OwnIns
 
 _ASIDE = Text(
     "What was kept of this session, exactly as it was: this version of the program cannot read it, or not "
@@ -24,6 +26,7 @@ class FilesView(View):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._columns = Columns(frame, self._mark)
+        self._own = OwnIns(frame)
         add, opening = frame.commands.register, frame.opening
         add("save", lambda _: opening.give_file(SCENARIO), Text("Save the scenario (TOML)"), "Ctrl+S")
         add("save-numbers", lambda _: opening.give_file(METRICS), Text("Save the numbers (JSON)"))
@@ -48,6 +51,7 @@ class FilesView(View):
             self._use = gui.add_button(Text("Run on these files"), order=4, visible=False)
             self._forget = gui.add_button(Text("Remove the files"), color="gray", order=5, visible=False)
             self._columns.build(6)
+            self._own.build(7)
             gui.add_html(notices.heading(Text("Save")), order=10)
             save = [
                 gui.add_button(Text("Download {name}", name=name), color="gray", order=11)
@@ -74,7 +78,12 @@ class FilesView(View):
         self._forget.visible = bool(uploads.files)
         self._use.visible = any(not upload.faults for upload in uploads.files.values())
         self._columns.follow()
+        self._own.follow()
         self._mark()
+
+    def draw(self, found: Shown) -> None:
+        """Say what damping would have changed, of a run on a ship's own INS."""
+        self._own.draw(found.run)
 
     def _mark(self) -> None:
         """Give the button that comes next the colour of the main one: a file, its columns or the run."""

@@ -25,8 +25,11 @@ _DOORS = (
     ),
     (
         "door-files",
-        Text("Use my recordings"),
-        Text("NMEA 0183 or CSV from your ship, or a scenario file. They stay on this server."),
+        Text("My ship's INS"),
+        Text(
+            "Drop what your INS and your log recorded, NMEA 0183 or CSV: see what damping would have "
+            "changed. Files stay on this server."
+        ),
     ),
 )
 """Command, title and sentence of each door."""
