@@ -28,6 +28,7 @@ QUANTITY_NAMES = {
     "water": Text("speed through the water"),
     "ground": Text("speed over ground along axes"),
     "heading": Text("heading"),
+    "attitude": Text("pitch and roll"),
 }
 """Names of what sentences hold."""
 _CLOCK_WARNING_S = 5.0

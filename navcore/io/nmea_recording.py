@@ -39,10 +39,12 @@ from navcore.io.series import (
 
 _HEADINGS = ("HDT", "THS", "PHOCT", "PASHR", "PSXN", "PSAT", "PRDID", "VHW", "HDG")
 """Kinds that give the heading, the better ones first."""
+_ATTITUDES = ("PIXSE", "PASHR", "PSXN", "PSAT", "PRDID")
 _KINDS = {
-    "velocity": ("RMC", "VTG"), "water": ("VBW", "VHW"), "ground": ("VBW",), "heading": _HEADINGS,
+    "velocity": ("RMC", "VTG", "PIXSE"), "water": ("VBW", "VHW"), "ground": ("VBW",), "heading": _HEADINGS,
+    "attitude": _ATTITUDES,
 }  # fmt: skip
-_PLACES = ("GGA", "GNS", "RMC", "GLL")
+_PLACES = ("GGA", "GNS", "RMC", "GLL", "PIXSE")
 _MOST_REPEATED = 0.01
 """Share of a kind; fewer are told in JSON alone."""
 _CHECKSUM = Text("wrong checksum")
@@ -188,8 +190,8 @@ def _positions(log: NmeaLog) -> list[Picked]:
     receivers: defaultdict[Channel, dict[str, Held]] = defaultdict(dict)
     for kind in _PLACES:
         for (source, address), held in log.ordered.readings.items():
-            if "position" in held and address[2:] == kind:
-                receivers[Channel(source, address[:2])][kind] = held["position"]
+            if "position" in held and kind in (address[2:], address):
+                receivers[Channel(source, address[:2] if kind != address else "")][kind] = held["position"]
     for kinds in receivers.values():
         if len(kinds) > 1:
             kinds.pop("GLL", None)

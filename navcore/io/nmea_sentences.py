@@ -209,6 +209,7 @@ def _pashr(fields: Fields) -> Decoded:
         "flags": np.where(attitude, fields.codes(flag_of("PASHR", 9), flag_of("PASHR", 10)), 0),
         "time_of_day": np.where(attitude, time_s, math.nan),
         "heading": np.where(attitude, fields.headings(1), math.nan),
+        "attitude": _attitude(fields, 4, 3, attitude),
     }
 
 
@@ -220,6 +221,7 @@ def _psat(fields: Fields) -> Decoded:
         "flags": np.where(attitude, fields.codes(flag_of("PSAT,HPR", 5)), 0),
         "time_of_day": np.where(attitude, fields.of(value.makers_time, 1), math.nan),
         "heading": np.where(attitude, fields.headings(2), math.nan),
+        "attitude": _attitude(fields, 3, 4, attitude),
     }
 
 
@@ -239,6 +241,7 @@ def _psxn(fields: Fields) -> Decoded:
         "role": np.where(attitude, 0, np.where(quality, ABOUT_OTHERS, OTHER_MESSAGE)),
         "flags": np.where(attitude, flags, 0),
         "heading": np.where(attitude, fields.headings(3), math.nan),
+        "attitude": _attitude(fields, 2, 1, attitude),
     }
 
 
@@ -258,7 +261,37 @@ def _phinf(fields: Fields) -> Decoded:
 
 def _prdid(fields: Fields) -> Decoded:
     """Attitude as RD Instruments has it: ``PRDID,pitch,roll,heading``."""
-    return {"heading": fields.headings(2)}
+    given = np.ones(fields.count.size, bool)
+    return {"heading": fields.headings(2), "attitude": _attitude(fields, 0, 1, given)}
+
+
+def _pixse(fields: Fields) -> Decoded:
+    """Output of an iXblue (Exail) INS beside its HDT: ``PIXSE,POSITI``, ``SPEED_``, ``ATITUD``, ``TIME__``.
+
+    Roll counts port up and pitch bow down in it. Other messages of the family are passed over.
+    """
+    names = ("POSITI", "SPEED_", "ATITUD", "TIME__")
+    placed, moving, leaning, timed = (fields.are(0, name) for name in names)
+    lat, lon = (fields.numbers(place, -most, most) for place, most in ((1, 90.0), (2, 360.0)))
+    position = np.column_stack([lat * DEG, lon * DEG, fields.numbers(3, -1e4, 1e5)])
+    velocity = np.column_stack([fields.speeds(place, 1.0) for place in (1, 2)])
+    with np.errstate(invalid="ignore"):
+        attitude = _attitude(fields, 2, 1, leaning) * (-1.0, 1.0)
+    told = placed | moving | leaning | timed
+    return {
+        "role": np.where(told, 0, OTHER_MESSAGE),
+        "time_of_day": np.where(timed, fields.of(value.makers_time, 1), math.nan),
+        "position": np.where(placed[:, None], position, math.nan),
+        "velocity": np.where(moving[:, None], velocity, math.nan),
+        "attitude": attitude,
+    }
+
+
+def _attitude(fields: Fields, pitch: int, roll: int, given: np.ndarray) -> np.ndarray:
+    """Pitch (bow up) and roll (starboard down) of the fields at two places, rad; NaN where one is missing."""
+    degrees = np.column_stack([fields.numbers(pitch, -90.0, 90.0), fields.numbers(roll, -180.0, 180.0)])
+    whole = given & ~np.isnan(degrees).any(axis=1)
+    return np.where(whole[:, None], degrees * DEG, math.nan)
 
 
 _STANDARD: dict[str, Decoder] = {
@@ -276,7 +309,8 @@ _STANDARD: dict[str, Decoder] = {
 }
 """Decoders by the last letters of the address; an older talker may leave out the last fields."""
 _MAKERS: dict[str, Decoder] = {
-    "PASHR": _pashr, "PHINF": _phinf, "PHOCT": _phoct, "PRDID": _prdid, "PSAT": _psat, "PSXN": _psxn,
+    "PASHR": _pashr, "PHINF": _phinf, "PHOCT": _phoct, "PIXSE": _pixse,
+    "PRDID": _prdid, "PSAT": _psat, "PSXN": _psxn,
 }  # fmt: skip
 """Decoders of makers' own sentences, by the whole address."""
 KINDS = ", ".join((*sorted(_STANDARD), *_MAKERS))

@@ -70,7 +70,7 @@ def test_a_flag_means_the_same_in_the_table_and_in_a_log(tmp_path: Path, flag: F
 
 def test_every_sentence_that_is_read_has_flags_or_is_known_to_have_none() -> None:
     flagged = {flag.sentence.partition(",")[0] for flag in FLAGS}
-    assert set(KINDS.split(", ")) - flagged == {"HDG", "HDT", "PRDID", "VHW", "ZDA"}
+    assert set(KINDS.split(", ")) - flagged == {"HDG", "HDT", "PIXSE", "PRDID", "VHW", "ZDA"}
 
 
 def test_letters_of_several_systems_count_where_they_agree() -> None:
