@@ -62,10 +62,10 @@ QUANTITIES = {
         "angle", -360, 360, "deg",
         "heading hdg hdt heading_true true_heading ship_heading ship_hdg gyro gyro_heading heading_gyro "
         "gyro_hdg pl_hd pl_hd1 ths yaw steuerkurs kreiselkurs kreisel rechtweisender_kurs kurs_rw rwk cap "
-        "cap_vrai cap_gyro rumbo_verdadero prua",
+        "cap_vrai cap_gyro rumbo_verdadero prua ship_true_heading ins_heading ins_yaw",
     ),
-    "pitch": _of("angle", -90, 90, "deg", "pitch ship_pitch"),
-    "roll": _of("angle", -180, 180, "deg", "roll ship_roll"),
+    "pitch": _of("angle", -90, 90, "deg", "pitch ship_pitch ins_pitch"),
+    "roll": _of("angle", -180, 180, "deg", "roll ship_roll ins_roll"),
     "ve": _of(
         "speed", -1e3, 1e3, "mps", "ve v_e v_east vel_e vel_east velocity_e velocity_east east_velocity"
     ),

@@ -98,9 +98,9 @@ FLAGS = (
     Flag("PHOCT", 5, ("heading",), OCTANS_STATUS),
     Flag("PHINF", 0, ("heading",), OCTANS),
 )
-"""All that are heeded. HDT, HDG, HDM, VHW, PRDID, PIXSE and PSXN,23 have none (PSXN,23 has that of PSXN,20 before
-it, HEHDT the worse one of the PHINF before and behind it), ZDA speaks of the time alone; ROT, VLW and all
-others are not read."""
+"""All that are heeded. HDT, HDG, HDM, VHW, PRDID, PIXSE and PSXN,23 have none (PSXN,23 has that of PSXN,20
+before it, HEHDT the worse one of the PHINF before and behind it), ZDA speaks of the time alone; ROT, VLW and
+all others are not read."""
 
 
 def meaning(flag: Flag, field: str) -> str:
