@@ -10,6 +10,7 @@ from typing import Any
 from navcore.engine.environment import start_utc
 from navcore.engine.measures import measure
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.answers import number
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.io.recording import load
@@ -187,22 +188,22 @@ def sentence(run: Run, key: str) -> str:
         return Text("The reference does not tell the {quantity}: choose another.", quantity=quantity)
     if value >= before:
         return Text(
-            "No method would have been better than the INS as recorded: {quantity} {before:.3g} {unit}, "
-            "with {method} {value:.3g} {unit}.",
+            "No method would have been better than the INS as recorded: {quantity} {before} {unit}, "
+            "with {method} {value} {unit}.",
             quantity=quantity,
-            before=before,
+            before=number(before, 3),
             unit=shown,
             method=best.method.name,
-            value=value,
+            value=number(value, 3),
         )
     return Text(
-        "With {method} the {quantity} would have been {value:.3g} {unit} in place of {before:.3g} {unit}: "
+        "With {method} the {quantity} would have been {value} {unit} in place of {before} {unit}: "
         "{share:.0f} % less.",
         method=best.method.name,
         quantity=quantity,
-        value=value,
+        value=number(value, 3),
         unit=shown,
-        before=before,
+        before=number(before, 3),
         share=100.0 * (1.0 - value / before),
     )
 

@@ -136,6 +136,7 @@ def error_plots(
     deciding = [method for method in scaled if method.status != "diverged"]
     cut = len(deciding) < len(scaled)
     peaks = {error.key: _peak(deciding or scaled, error.name) for error in ERRORS}
+    unknown = () if run.against is None else run.against.not_known
     units = _units(peaks, display)
     plots: dict[str, UplotFigure] = {}
     for column, error in enumerate(ERRORS):
@@ -145,7 +146,7 @@ def error_plots(
             key=key,
             quantity=error.name,
             title=error.title,
-            symbol=error.symbol if peaks[key] > 0.0 else Text("{symbol} = 0", symbol=error.symbol),
+            symbol=_symbol(error.symbol, peaks[key], error.name in unknown),
             unit=unit,
             time_unit=unit_of_time,
             time=time,
@@ -248,7 +249,15 @@ def _time_axis(run: Run) -> np.ndarray:
 
 
 def _peak(methods: list[MethodRun], name: str) -> float:
-    return max((m.errors[name]["max_abs"] for m in methods), default=0.0)
+    sizes = (m.errors[name]["max_abs"] for m in methods)
+    return max((size for size in sizes if not math.isnan(size)), default=0.0)
+
+
+def _symbol(symbol: str, peak: float, unknown: bool) -> str:
+    """Name on the axis: a curve that is 0 all the time, or that no reference tells, says so."""
+    if unknown:
+        return Text("{symbol} not known", symbol=symbol)
+    return symbol if peak > 0.0 else Text("{symbol} = 0", symbol=symbol)
 
 
 def _units(peaks: dict[str, float], display: Display) -> dict[str, Unit]:

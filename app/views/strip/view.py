@@ -9,7 +9,7 @@ from navcore.engine.measures import measure
 from navcore.engine.run import ENDINGS, MethodRun, Run
 from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
-from navcore.quantities import QUANTITIES
+from navcore.quantities import QUANTITIES, components
 from navcore.scenario.stochastic import drawn_as_zero
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import COMMAND, hint, word
@@ -110,6 +110,13 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
         )
 
 
+def known(method: MethodRun, key: str) -> bool:
+    """Whether a reference tells a method's error, as in every run but one on a ship's own INS."""
+    kind = QUANTITIES[key].kind
+    names = () if kind is None else components(kind)
+    return not any(math.isnan(method.errors[name]["rms"]) for name in names)
+
+
 def _before(found: Shown, name: str) -> MethodRun | None:
     """Find the method of the same name in the pinned run with which this one is compared."""
     pinned: Run | None = None if found.baseline is None else found.baseline.run
@@ -127,7 +134,7 @@ def _numbers(method: MethodRun, before: MethodRun | None, display: Display) -> I
             text = settling(value) if method.loop.stable else Text("unstable")
         else:
             unit = wanted_unit(getattr(display, choice), value, suitable)
-            text = with_unit(rounded(value / unit.si), unit.name)
+            text = with_unit(rounded(value / unit.si), unit.name) if known(method, key) else "n/a"
         change = _change(value, before, key)
         words = {"label": QUANTITIES[key].label, "what": QUANTITIES[key].help, "change": change}
         title = (
