@@ -47,7 +47,8 @@ def test_tuning_goes_by_the_recording(files: dict[str, str]) -> None:
     found = tune(scenario, "velocity_rms", vary, default_limits=False, confirm=True)
     assert found.before == pytest.approx(velocity_rms(scenario), rel=1e-6)
     assert found.objective == pytest.approx(velocity_rms(found.scenario), rel=1e-6)
-    assert found.objective < found.before and found.confirmed is None and found.floor is None
+    assert found.before is not None and found.objective < found.before
+    assert found.confirmed is None and found.floor is None
 
 
 @pytest.mark.parametrize(("objective", "truth"), [("tilt_rms", True), ("velocity_rms", False)])
