@@ -197,6 +197,7 @@ guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario.schema_file
 	@$(BIN)/python -m navcore.analysis.network_table
 	@$(BIN)/python -m navcore.questions.page
+	@$(BIN)/python -m tools.ledger
 
 wheel: $(STAMPS)/project
 	@$(BIN)/python -m navcore.warm portable

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import BaseModel
 
-from navcore.engine.run import MethodRun, Run, span_of
+from navcore.engine.run import MethodRun, Run
+from navcore.engine.spans import span_of
 from navcore.engine.verification import Verification
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text

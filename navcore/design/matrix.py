@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from navcore.engine.known_by import known_words
 from navcore.engine.measures import SeedShare, finite, needs_seeds, verdict
 from navcore.engine.run import Run
 from navcore.engine.verdicts import Judgement, Verdict
@@ -125,7 +126,8 @@ def matrix_rows(run: Run, shares: Sequence[SeedShare], test: str = "") -> Iterat
             judgement = shares[k].limits[place] if shares else None
             value, word = verdict(one, method, judgement)
             how = how_judged(one, run, judgement)
-            yield MatrixRow(test, one, method.method.name, how, value, word, judgement)
+            rests = known_words(one.quantity, method.method, run.scenario.run.fidelity)
+            yield MatrixRow(test, one, method.method.name, how, value, word, judgement, rests)
 
 
 def how_judged(one: Requirement, run: Run, judgement: Judgement | None) -> str:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from navcore.engine.reference_errors import D_LAT, D_LON, DV_E, DV_N, PHI_U, RecordedErrors
-from navcore.engine.run import MethodRun, PlotSeries, Span, span_of
+from navcore.engine.run import MethodRun, PlotSeries
+from navcore.engine.spans import Span, span_of
 from navcore.mechanization.recorder import MAX_BINS, POSITION, QUANTITIES, READING_S, XI_COLUMN
 from navcore.motion.truth import LAT
 from navcore.quantities import COMPONENTS, NAMES

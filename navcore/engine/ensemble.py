@@ -16,8 +16,8 @@ from navcore.engine.drivers.common import law_of, network_of, requirement_spans,
 from navcore.engine.drivers.kalman import Gains
 from navcore.engine.drivers.linear import carried_out
 from navcore.engine.environment import Environment, environment, environment_side_by_side
-from navcore.engine.run import Span, spans
 from navcore.engine.simulation import simulate
+from navcore.engine.spans import Span, spans
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.error_batch import WIDTH, ErrorModelBatch
 from navcore.mechanization.recorder import FINAL, NAMES, POSITION

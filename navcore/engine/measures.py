@@ -11,7 +11,8 @@ import numpy as np
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.report import whole_system_report
 from navcore.engine.readings import settle_point, settled_s
-from navcore.engine.run import MethodRun, Run, Span
+from navcore.engine.run import MethodRun, Run
+from navcore.engine.spans import Span
 from navcore.engine.verdicts import Judgement, Verdict, together
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__

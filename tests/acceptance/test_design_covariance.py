@@ -8,6 +8,13 @@ from tools.covariance import MOTIONS, ratios
 SEEDS = 200
 
 
+@pytest.mark.known(
+    "twin",
+    ["tilt_rms", "velocity_rms", "heading_rms", "position_rms"],
+    kinds=["external"],
+    fidelities=["covariance"],
+    source="an ensemble of runs",
+)
 @pytest.mark.slow
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_covariance_holds_against_seeds(motion: str) -> None:

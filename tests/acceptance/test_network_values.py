@@ -104,6 +104,13 @@ def test_liu_6_reference_error_to_tilt_at_eta_one_half(zeta: float) -> None:
         np.testing.assert_allclose(den, np.array([1, 3.4, 6.8, 8.2, 6.8, 3.4, 1]) * powers, rtol=1e-12)
 
 
+@pytest.mark.known(
+    "oracle",
+    ["damping_ratio"],
+    kinds=["external"],
+    fidelities=["loop"],
+    source="Liu 2021: triple pair of damping 0.5",
+)
 def test_complementary_has_a_triple_pair_of_damping_one_half() -> None:
     loop = analyse(parse_network({"id": "complementary"}).transfer(OMEGA_S))
     assert loop.damping_ratio == pytest.approx(0.5, rel=1e-14)
@@ -119,6 +126,9 @@ def network_of(xi: float, variant: str, **more: float) -> LinearNetwork:
     return parse_network({"id": "pole2", "xi": xi, "variant": variant, **more}).transfer(OMEGA_S)
 
 
+@pytest.mark.known(
+    "oracle", ["damping_ratio"], kinds=["external"], fidelities=["loop"], source="Sun 2022, table 1"
+)
 @pytest.mark.parametrize("xi", SUN_TABLE_1)
 def test_exact_poles_are_where_they_were_asked(xi: float) -> None:
     network = network_of(xi, "exact")
@@ -189,6 +199,9 @@ def test_zha_15_xi_next_to_one_joins_the_limit() -> None:
     np.testing.assert_allclose(at[2], at[1], atol=1e-7)
 
 
+@pytest.mark.known(
+    "oracle", ["settling_s"], kinds=["external"], fidelities=["loop"], source="closed form of repeated poles"
+)
 def test_repeated_poles_settle_where_the_formula_does() -> None:
     settling = analyse(parse_network('id = "compass", xi = 1.0').transfer(OMEGA_S)).settling_s
     time = np.linspace(0.0, 2000.0, 2_000_001)

@@ -194,6 +194,23 @@ def both(motion, method) -> tuple[np.ndarray, np.ndarray]:
     return run.recorder.rows, recorder.rows
 
 
+@pytest.mark.known(
+    "twin",
+    [
+        "tilt_max_arcsec",
+        "tilt_rms_arcsec",
+        "velocity_max_mps",
+        "velocity_rms_mps",
+        "heading_max_arcmin",
+        "heading_rms_arcmin",
+        "position_max_m",
+        "position_rms_m",
+        "position_final_m",
+    ],
+    kinds=["free", "internal", "external", "averaging"],
+    fidelities=["strapdown", "error_model"],
+    source="the other fidelity",
+)
 @pytest.mark.parametrize("method", list(METHODS))
 @pytest.mark.parametrize("motion", [StaticMotion(), VOYAGE, DENG_SWING], ids=["static", "legs", "swing"])
 def test_both_fidelities_agree_within_two_percent_of_the_peak(motion, method):
@@ -210,6 +227,13 @@ def test_both_fidelities_agree_within_two_percent_of_the_peak(motion, method):
 VE_COLUMN = 3
 
 
+@pytest.mark.known(
+    "oracle",
+    ["velocity_max_mps", "velocity_rms_mps"],
+    kinds=["free"],
+    fidelities=["strapdown"],
+    source="closed form, theory.md 9.5",
+)
 def test_free_velocity_under_a_gyro_bias_9_5():
     run = navigate(StaticMotion(), 100.0, 3600.0, Imu(gyro_bias_dph=(0.0, 0.02, 0.0)))
     v_e = run.navigation[:, VE_COLUMN]
@@ -218,6 +242,13 @@ def test_free_velocity_under_a_gyro_bias_9_5():
         assert v_e[t] == pytest.approx(wanted, abs=1e-3 * peak)
 
 
+@pytest.mark.known(
+    "oracle",
+    ["tilt_max_arcsec", "tilt_rms_arcsec"],
+    kinds=["external"],
+    fidelities=["strapdown"],
+    source="theory.md 9.6, of an independent program",
+)
 @pytest.mark.parametrize("law_step_s", [1.0, 0.01], ids=["law_1_hz", "law_100_hz"])
 def test_compass_settles_9_6(law_step_s):
     imu = Imu(gyro_bias_dph=(0.0, 0.02, 0.0), accel_bias_ug=(50.0, 50.0, 0.0))

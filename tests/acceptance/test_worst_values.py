@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from navcore import parse_network
+from navcore.analysis import analyse
+from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.transfers import time_response
 from navcore.analysis.worst_step import worst_step
 from navcore.design.worst.bounded import worst
@@ -20,6 +22,8 @@ CHANNEL = {
     'id = "unity2", zeta = 0.5': (62.4, 1.399),
 }
 """Worst tilt (arcsec) and velocity error (m/s) of one channel for a log within 1 m/s."""
+STEPS = dict(zip(CHANNEL, ((23.10, 0.668), (17.01, 0.616), (7.32, 0.458), (19.10, 0.585)), strict=True))
+"""Largest tilt (arcsec) and velocity error (m/s) after a step of the log by 1 m/s, of the same table."""
 UNITY2 = {"id": "unity2", "zeta": 0.5}
 COMPLEMENTARY = {"id": "complementary", "zeta": 0.5, "eta": 0.5}
 WHOLE = {
@@ -38,6 +42,13 @@ WHOLE = {
 """Tilt E, N (arcsec), heading (arcmin), velocity E, N (m/s), latitude, longitude (m) after 24 h."""
 
 
+@pytest.mark.known(
+    "oracle",
+    ["worst_tilt", "worst_velocity"],
+    kinds=["external"],
+    fidelities=["loop"],
+    source="table that was computed apart from this program",
+)
 @pytest.mark.parametrize("network", CHANNEL)
 def test_one_channel_within_half_a_percent(network: str) -> None:
     found = worst_step(parse_network(network).transfer(OMEGA_S))
@@ -45,6 +56,22 @@ def test_one_channel_within_half_a_percent(network: str) -> None:
     assert found.tilt_rad is not None and found.velocity_mps is not None
     assert found.tilt_rad / ARCSEC == pytest.approx(tilt, rel=5e-3)
     assert found.velocity_mps == pytest.approx(velocity, rel=5e-3)
+
+
+@pytest.mark.known(
+    "oracle",
+    ["log_tilt", "overshoot"],
+    kinds=["external"],
+    fidelities=["loop"],
+    source="table that was computed apart from this program",
+)
+@pytest.mark.parametrize("network", STEPS)
+def test_a_step_of_the_log_within_half_a_percent(network: str) -> None:
+    transfer = parse_network(network).transfer(OMEGA_S)
+    judged = JudgedLoop(transfer, analyse(transfer), True)
+    tilt, velocity = STEPS[network]
+    assert loop_value("log_tilt", judged) / ARCSEC == pytest.approx(tilt, rel=5e-3)
+    assert loop_value("overshoot", judged) == pytest.approx(velocity, rel=5e-3)
 
 
 @pytest.mark.parametrize(

@@ -82,6 +82,23 @@ def _compiled(
     return np.array(states)
 
 
+@pytest.mark.known(
+    "twin",
+    [
+        "tilt_max_arcsec",
+        "tilt_rms_arcsec",
+        "velocity_max_mps",
+        "velocity_rms_mps",
+        "heading_max_arcmin",
+        "heading_rms_arcmin",
+        "position_max_m",
+        "position_rms_m",
+        "position_final_m",
+    ],
+    kinds=["free", "external", "internal"],
+    fidelities=["error_model"],
+    source="a slow program in plain Python",
+)
 @pytest.mark.parametrize("earth", [SPHERE, WGS84], ids=lambda e: e.name)
 @pytest.mark.parametrize(
     ("damping", "parameters", "limit"),

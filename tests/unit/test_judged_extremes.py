@@ -12,6 +12,9 @@ from navcore.foundation.earth import SPHERE
 from navcore.networks import parse_network
 
 
+@pytest.mark.known(
+    "twin", ["log_tilt", "overshoot"], kinds=["external"], fidelities=["loop"], source="fine grids"
+)
 @pytest.mark.parametrize(
     ("block", "key", "output"),
     [

@@ -54,6 +54,13 @@ def test_settling_and_damping_are_the_loops_and_a_free_method_has_none() -> None
     assert measured("damping_ratio", free) == (0.0,)
 
 
+@pytest.mark.known(
+    "oracle",
+    ["tilt_overshoot"],
+    kinds=["external"],
+    fidelities=["loop"],
+    source="partial fractions of the three poles",
+)
 def test_overshoot_of_the_compass_is_that_of_its_three_poles() -> None:
     """phi/phi0 = s (s + K1)/((s+sigma)(s^2 + 2 sigma s + sigma^2/xi^2)), by partial fractions."""
     sigma, w = 0.0088, 0.0088 * math.sqrt(1 / 0.7**2 - 1)

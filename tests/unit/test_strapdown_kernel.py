@@ -45,6 +45,23 @@ def _damping(damping: str, network: NetworkParameters, v_r: np.ndarray):
     return lambda k, v: twin.step(v_r - v[:2], True, v[:2])
 
 
+@pytest.mark.known(
+    "twin",
+    [
+        "tilt_max_arcsec",
+        "tilt_rms_arcsec",
+        "velocity_max_mps",
+        "velocity_rms_mps",
+        "heading_max_arcmin",
+        "heading_rms_arcmin",
+        "position_max_m",
+        "position_rms_m",
+        "position_final_m",
+    ],
+    kinds=["free", "external", "internal"],
+    fidelities=["strapdown"],
+    source="a slow program in plain Python",
+)
 @pytest.mark.parametrize("motion", [DENG_SWING, DRIVE], ids=["swing", "legs"])
 @pytest.mark.parametrize(
     ("kind", "network"),

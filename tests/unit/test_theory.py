@@ -148,6 +148,13 @@ def earth_mode_growth(network: LinearNetwork, lat: float) -> float:
     return float(near.real) * OMEGA_S
 
 
+@pytest.mark.known(
+    "oracle",
+    ["h_slope_s", "earth_mode_growth_per_s"],
+    kinds=["external"],
+    fidelities=["loop"],
+    source="table of theory.md 10, of an independent program",
+)
 @pytest.mark.parametrize("name", GROWTH)
 def test_growth_of_the_24_h_mode(name: str):
     slope, days = (theory.numbers(cell) for cell in GROWTH[name])

@@ -51,6 +51,13 @@ def columns(run: Run, name: str) -> list[np.ndarray]:
 # ------------------------------------------------------------ poles
 
 
+@pytest.mark.known(
+    "oracle",
+    ["growth_per_s"],
+    kinds=["whole"],
+    fidelities=["loop"],
+    source="figures of an independent program",
+)
 @pytest.mark.parametrize(
     ("level", "azimuth", "modes", "growth"),
     [
@@ -95,6 +102,13 @@ def test_an_east_gyro_bias_turns_the_heading_to_where_it_settles() -> None:
     assert heading[-1] == pytest.approx(wanted, rel=1e-3)
 
 
+@pytest.mark.known(
+    "oracle",
+    ["position_final_m"],
+    kinds=["whole"],
+    fidelities=["error_model", "strapdown"],
+    source="closed form",
+)
 @pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
 def test_a_standing_error_of_the_log_leaves_a_latitude_of_609_m(fidelity: str) -> None:
     sampling = {"rate_hz": 10.0} if fidelity == "strapdown" else {}
@@ -334,6 +348,13 @@ COMPASS = {"id": "compass", "sigma": 0.0015, "xi": 0.7}
 GYROCOMPASS = {"sigma": 0.002, "xi": 0.707}
 
 
+@pytest.mark.known(
+    "oracle",
+    ["heading_max_arcmin", "heading_rms_arcmin"],
+    kinds=["gyrocompass"],
+    fidelities=["error_model", "strapdown"],
+    source="figures of an independent integration, and closed forms",
+)
 @pytest.mark.parametrize(
     ("blocks", "arcmin"),
     [

@@ -14,6 +14,7 @@ from navcore.quantities import ERRORS, QUANTITIES, STATISTICS, RecordedError
 from schuler_bench.plots import style
 from schuler_bench.plots.budgets import times_the_floor
 from schuler_bench.plots.effective import earth_mode_text
+from schuler_bench.plots.known import known_marks
 from schuler_bench.plots.pinned import Pinned, difference_text
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import (
@@ -46,6 +47,15 @@ _BEST = ("settling_s",)
 """Of which the smallest is marked; not of the worst tilt, for a method without log has none."""
 
 
+_OF_KIND = {
+    "tilt": "tilt_rms_arcsec",
+    "velocity": "velocity_rms_mps",
+    "heading": "heading_rms_arcmin",
+    "position": "position_rms_m",
+}
+"""Quantity whose tests say how an error of a kind is known."""
+
+
 @dataclass(frozen=True)
 class Row:
     """One line of the table.
@@ -64,6 +74,8 @@ class Row:
         For every method, which of its cells are the best of all methods; empty where there is no best.
     hint : str
         What it is, shown beside the pointer; may be empty.
+    known : str
+        HTML of the marks that say how its numbers are known.
     """
 
     label: str
@@ -72,6 +84,7 @@ class Row:
     deltas: tuple[str, ...] = ()
     best: tuple[tuple[bool, ...], ...] = ()
     hint: str = ""
+    known: str = ""
 
 
 def metrics_rows(
@@ -188,7 +201,8 @@ def _loop_rows(run: Run) -> list[Row]:
         quantity = QUANTITIES[key]
         best = _best([[value] for value in values]) if key in _BEST else ()
         cells = tuple((text,) for text in texts)
-        rows.append(Row(quantity.label, "", cells, best=best, hint=quantity.help))
+        marks = known_marks(key, run)
+        rows.append(Row(quantity.label, "", cells, best=best, hint=quantity.help, known=marks))
     return rows
 
 
@@ -246,7 +260,8 @@ def _error_row(run: Run, error: RecordedError, unit: Unit) -> Row:
     sizes = [
         [math.nan if s == "final" else abs(v) for s, v in zip(STATISTICS, row, strict=True)] for row in values
     ]
-    return Row(error.label, unit.name, cells, best=_best(sizes), hint=error.title)
+    marks = known_marks(_OF_KIND[error.kind.name], run)
+    return Row(error.label, unit.name, cells, best=_best(sizes), hint=error.title, known=marks)
 
 
 def metrics_html(
@@ -355,7 +370,7 @@ def method_px(rows: Sequence[Row], letter_px: float, padding_px: float) -> float
 
 
 def _html_row(line: Row, columns: int, decimals: int = 0, look: str = "") -> str:
-    cells = [cell(quoted(line.label)), cell(quoted(line.unit), "sb-m")]
+    cells = [cell(quoted(line.label) + line.known), cell(quoted(line.unit), "sb-m")]
     for place, texts in enumerate(line.cells):
         best = line.best[place] if line.best else (False,) * len(texts)
         marked = [

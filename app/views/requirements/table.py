@@ -20,6 +20,7 @@ from schuler_bench.editing.limits import (
 )
 from schuler_bench.jobs.odds import Odds
 from schuler_bench.plots import style
+from schuler_bench.plots.known import known_mark
 from schuler_bench.plots.limits import SIGNS
 from schuler_bench.plots.pinned import Pinned, pinned_methods, together
 from schuler_bench.plots.table import cell, row, table
@@ -85,6 +86,7 @@ def requirements_html(
             [odds_html(_of(odds, i), place) for i in shown],
             asked=asked,
             boxes=boxes,
+            judged=judged,
         )
         for place in places
     )
@@ -127,7 +129,9 @@ def _row(
     *,
     asked: bool,
     boxes: Mapping[str, int] | None,
+    judged: Run,
 ) -> str:
+    fidelity = judged.scenario.run.fidelity
     quantity, one = verdict.quantity, verdict.requirement
     unit = (
         Text(' <span class="sb-muted">({shown:html})</span>', shown=quantity.shown) if quantity.shown else ""
@@ -141,8 +145,9 @@ def _row(
     cells = (
         cell(
             Text(
-                "{measured}{mark}{odds}",
+                "{measured}{known}{mark}{odds}",
                 measured=_measured(verdict, value),
+                known=known_mark(quantity.key, method.method, fidelity),
                 mark=_mark(word) if asked else "",
                 odds=odds if one is not None else "",
             ),
@@ -151,8 +156,9 @@ def _row(
             data_value=_number(value),
             data_passed="" if word == "" else WORDS[word],
         )
-        for value, word, odds in (
-            (verdict.measured[i], verdict.words[i], said) for i, said in zip(shown, beside, strict=True)
+        for value, word, odds, method in (
+            (verdict.measured[i], verdict.words[i], said, judged.methods[i])
+            for i, said in zip(shown, beside, strict=True)
         )
     )
     name = Text("{label:html}{unit}", label=quantity.label, unit=unit)

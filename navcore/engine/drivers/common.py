@@ -11,7 +11,8 @@ from navcore.analysis.filter_loop import filter_loop
 from navcore.analysis.heading_settling import heading_settling
 from navcore.analysis.held_log import Stretch, growth_along, held_log
 from navcore.analysis.whole_system import WholeSystem, duration, whole_system
-from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
+from navcore.engine.run import MethodRun, Status, plot_series, statistics
+from navcore.engine.spans import spans
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
