@@ -49,6 +49,8 @@ FEW: list[dict[str, Any]] = [
     {**EXTERNAL, "azimuth": {"id": "unity2"}},
     {"damping": "internal", "network": {"id": "unity2"}, "azimuth": {"id": "complementary"}},
     {**EXTERNAL, "gyrocompass": {}, "policy": {"id": "threshold"}},
+    {"damping": "external", "network": {"id": "compass"}, "policy": {"id": "mobility"}},
+    {**EXTERNAL, "azimuth": {"id": "unity2"}, "policy": {"id": "states"}, "switching": {"id": "step"}},
 ]
 """One law for each part of the law."""
 
