@@ -231,8 +231,8 @@ POLICIES = {
     "variation": ("n_s", "t0_s", "a", "b", "c", "count"),
     "adaptive": ("lowpass_s",),
     "schedule": ("duration_s",),
-    "mobility": ("sigma_steady", "sigma_moving", "high_mps2"),
-    "states": ("limit_mps2", "difference_mps"),
+    "mobility": ("high_mps2",),
+    "states": (),  # the state stays where a slider crosses nothing
 }
 SWITCHINGS = {
     "hard": (),
