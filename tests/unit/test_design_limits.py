@@ -141,6 +141,7 @@ def test_the_table_has_a_row_a_method_with_share_limit_and_this_run(ship: Scenar
     assert [by_place[method.name] for method in ship.method] == grows
     assert [f"take-design {k}" in rows[3 + k][2] for k in range(3)] == [True] * 3
     assert "Limits: largest tilt ≤ 12 arcsec, settling ≤ 200 min." in html
+    assert "The worst that a log within 1 m/s can do to the tilt of one channel, ″: " in html
     # the answer to a slider, before a seed is run
     bare = designs_html(run, lambda _: None, None)
     assert bare.count("runs are under way") == 3 and "✗ misses" in bare

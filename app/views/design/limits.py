@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,6 +13,7 @@ from navcore.design.measures import Setting
 from navcore.design.shares import Limit
 from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
+from navcore.engine.measures import measure
 from navcore.engine.run import Run
 from navcore.foundation.answers import assumptions
 from navcore.foundation.notation import symbol
@@ -111,9 +113,26 @@ def designs_html(
         body += [_title(_robust_title(found)), *map(_line, _robust_lines(run, found))]
     words = Text.joined(", ", map(requirement_words, run.scenario.requirement))
     assumed = found.assumptions() if found is not None else assumptions(assumed_zero(run.scenario))
-    said = Text.joined(" ", (Text("Limits: {asked}.", asked=words), *assumed))
+    said = Text.joined(" ", (Text("Limits: {asked}.", asked=words), *assumed, *_worst_case(run)))
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
+
+
+def _worst_case(run: Run) -> Iterator[str]:
+    """Give a sentence on the worst that a log can do to each method; none where no method reads it."""
+    row = QUANTITIES["worst_tilt"]
+    values = {method.method.name: measure(method, row.key) for method in run.methods}
+    if worst := {name: value for name, value in values.items() if value > 0.0}:
+        named = (
+            Text("{name} {value}", name=name, value=number(value / row.size, 3))
+            if math.isfinite(value)
+            else Text("{name} without bound", name=name)
+            for name, value in worst.items()
+        )
+        yield Text(
+            "The worst that a log within 1 m/s can do to the tilt of one channel, ″: {named}.",
+            named=Text.joined(", ", named),
+        )
 
 
 def limits_wanted() -> str:

@@ -29,7 +29,7 @@ _CORRECT_TOLD = Text(
     "Track and log do not agree. Try runs with the correction and compares the position errors; correct sets "
     "the field that is named."
 )
-_FIRST = 7
+_FIRST = 8
 """Fields of the log's model, in its order, that are shown without asking."""
 _KINDS = {"event": LogEvent, "outage": Outage}
 
@@ -46,7 +46,7 @@ class LogView(FieldsView):
         """Make the widgets."""
         super().build(tab)
         gui = self.frame.gui
-        self._specs = form.fields(Reference, ("reference",))
+        self._specs = sorted(form.fields(Reference, ("reference",)), key=lambda spec: spec.path[-1] != "part")
         with tab:
             self._all = gui.add_checkbox(
                 Text("all log errors"),
@@ -168,7 +168,11 @@ class LogView(FieldsView):
         self._show_fit(scenario)
         self._show_correction(scenario)
         kind = scenario.reference.kind
-        recorded = [spec for spec in self._specs if spec.kind == "choice" or spec.path[1] in RECORDED_ONLY]
+        recorded = [
+            spec
+            for spec in self._specs
+            if spec.path[1] in RECORDED_ONLY or (spec.kind == "choice" and spec.path[1] != "part")
+        ]
         simulated = [spec for spec in self._specs if spec.path[1] not in RECORDED_ONLY]
         specs = {"none": [], "file": recorded}.get(kind, simulated)
         first, more = specs[:_FIRST], specs[_FIRST:]
