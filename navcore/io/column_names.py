@@ -132,7 +132,7 @@ _TIMES = {
     "gpst stamp header_stamp field_header_stamp rosbag_timestamp utc_timestamp datetime_utc date_time_utc "
     "utc_datetime time_iso iso8601 date_time_iso time_gmt "
     "gmt_time datetime_gmt gmt base_date_time basedatetime received_at recorded_at zeit uhrzeit zeitstempel "
-    "datum_uhrzeit datum_zeit heure horodatage date_heure hora fecha_hora ora",
+    "datum_uhrzeit datum_zeit heure horodatage date_heure hora fecha_hora ora temps tiempo tempo",
     UNIX: "unix unix_time unixtime epoch epoch_time posix posix_time unix_s time_unix",
     SECONDS: "t_s t s sec seconds elapsed elapsed_s elapsed_seconds time_s time_sec time_seconds",
     DATE: "date date_utc utc_date gps_date date_gmt gmt_date datum fecha",

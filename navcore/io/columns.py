@@ -304,7 +304,14 @@ def _without_placeholders(table: Table) -> Table:
 
 def _hint(name: str, value: float) -> str:
     """Unit that a latitude or longitude out of range may be in; or empty."""
-    if not name.startswith(("lat", "lon", "lng")) or not 1e5 < abs(value) <= 1.8e9:
+    if not name.startswith(("lat", "lon", "lng")):
+        return ""
+    if 100.0 <= abs(value) <= 18000.0 and abs(value) % 100.0 < 60.0:
+        return Text(
+            " (degrees and minutes run together? Give degrees, or write each with its side in one cell, "
+            "4530.5N)"
+        )
+    if not 1e5 < abs(value) <= 1.8e9:
         return ""
     return Text(" (counts of 1e-7°? Name the column {name}_e7)", name=name)
 

@@ -125,20 +125,25 @@ def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: Way, most: fl
     near, close = beside
     told, course = angle[near], np.arctan2(way.east, way.north)[close]
     off = angle_off(told, course)
-    degrees, turned = np.rad2deg(angle % (2.0 * np.pi)), np.rad2deg(told % (2.0 * np.pi))
-    radians = degrees.max() <= 2.0 * np.pi + 0.01
-    plainly_radians = radians and off > _NEAR and angle_off(turned, course) < 0.2 * off
+    turned = np.rad2deg(told % (2.0 * np.pi))
+    # From 0 to 2 pi, or from -pi to pi.
+    radians = any(
+        np.abs((np.rad2deg(angle) + turn) % 360.0 - turn).max() <= 2.0 * np.pi + 0.01 for turn in (0.0, 180.0)
+    )
+    plainly_radians = radians and off > _NEAR and angle_off(_signed_degrees(told), course) < 0.2 * off
     if off <= most and not plainly_radians:
         return []
     slips = (
-        (Text("radians taken for degrees"), radians, turned, course),
+        (Text("radians taken for degrees"), radians, _signed_degrees(told), course),
+        (Text("tenths of a degree taken for degrees"), True, 0.1 * np.deg2rad(turned), course),
         (Text("the wrong sign of the angle or of the longitude"), True, -told, course),
         (Text("the wrong sign (hemisphere) of the latitude"), True, told, np.pi - course),
         (Text("the opposite direction"), True, told + np.pi, course),
         (Text("east and north exchanged"), True, 0.5 * np.pi - told, course),
     )  # fmt: skip
-    likely = next((name for name, able, mended, to in slips if able and angle_off(mended, to) < _NEAR), "")
-    reason = likely or Text("a wrong unit, sign or zero")
+    # A steady course leaves several open.
+    likely = [name for name, able, mended, to in slips if able and angle_off(mended, to) < _NEAR]
+    reason = Text.joined(Text(" or "), likely) if likely else Text("a wrong unit, sign or zero")
     return [
         Text(
             "{what} (median {told:.1f}°) is {off:.0f}° from the course of the track: {reason}?",
@@ -148,6 +153,11 @@ def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: Way, most: fl
             reason=reason,
         )
     ]
+
+
+def _signed_degrees(angle: np.ndarray) -> np.ndarray:
+    """Degrees from -180 to 180 of angles, which are the radians that were taken for degrees."""
+    return (np.rad2deg(angle) + 180.0) % 360.0 - 180.0
 
 
 def angle_off(angle: np.ndarray, course: np.ndarray) -> float:

@@ -48,7 +48,7 @@ from navcore.io.source import read_text
 from navcore.io.table_flags import flag_columns, heed
 from navcore.io.table_layout import COMMENTS, head_of_text, holds_number, is_row, is_units, layout_of
 from navcore.io.table_times import Table
-from navcore.io.times.parts import part_columns
+from navcore.io.times.parts import part_columns, stamp_columns
 from navcore.io.written_units import without_brackets
 
 
@@ -102,8 +102,9 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             )
             raise InputError(Fault(where, "", None, allowed))
         clock, parts = week_columns(header), dict[str, int]()
-        if not clock and not has_clock(header[:MOST_COLUMNS]):
-            parts = part_columns([plain_name(without_brackets(name)[0]) for name in header[:MOST_COLUMNS]])
+        if not clock:
+            plain = [plain_name(without_brackets(name)[0]) for name in header[:MOST_COLUMNS]]
+            parts = stamp_columns(plain) if has_clock(header[:MOST_COLUMNS]) else part_columns(plain)
             clock = list(parts.values())
         named = [UTC if clock[:1] == [index] else name for index, name in enumerate(header)]
         rows = Rows(header, require_columns(where, named))
@@ -130,6 +131,9 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
     first = ""
     for number, row in _after_header(where, text, separator, header_line):
         row = _fitted(row, width, separator, rows.columns)
+        if row[0] == header[0] and row == header:
+            rows.headers += 1
+            continue
         if instance is not None and len(row) == width:
             first = first or row[instance].strip()
             if row[instance].strip() != first:
@@ -155,6 +159,14 @@ def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
             rows.sides.setdefault(index, []).append(row[index])
     if rows.others_of_kind:
         rows.warnings.append(instance_words(rows.others_of_kind, first))
+    if rows.headers:
+        rows.warnings.append(
+            Text.plural(
+                "the header stands in {count} row more: files one behind the other? Left out",
+                "the header stands in {count} rows more: files one behind the other? Left out",
+                count=rows.headers,
+            )
+        )
     _tell_numerals(where, rows, column_map)
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
         rows.warnings.append(Text("the last row is cut off: left out"))
@@ -288,6 +300,7 @@ def _table(where: str, rows: Rows, column_map: ColumnMap | None, ids: Callable[[
                 (Text("without a time"), untimed),
                 (Text("cannot be read"), len(rows.skipped)),
                 (Text("of another sensor of this kind"), rows.others_of_kind),
+                (Text("repeats the header"), rows.headers),
             )
             if count
         ),

@@ -63,7 +63,7 @@ def times_of_rows(
         dates = rows.cells[DATE]
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
     parsed = _as_numbers(cells)
-    if parsed is None and column.stem in (UTC, CLOCK):
+    if parsed is None and column.stem in (UTC, CLOCK) and not column.unit:
         time_s, dated = times(where, name, cells, numbered)
         if dated and "gpst" in name:
             rows.warnings.append(Text("column {name} is GPS time: leap seconds removed", name=column.name))

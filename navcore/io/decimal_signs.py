@@ -22,6 +22,9 @@ _GROUPED = {
     for sign, other in ((",", "."), (".", ","))
 }
 """Numbers whose digits a sign parts into groups of three, by that sign."""
+_SPACED = re.compile("[-+]?\\d{1,3}(?:[\u00a0\u2007\u2009\u202f'’]\\d{3})+(?:[.,]\\d{0,40})?")
+"""Numbers whose groups no-break or thin spaces or apostrophes part, which no decimal sign is taken for."""
+_SPACES = str.maketrans(dict.fromkeys("\u00a0\u2007\u2009\u202f'’", ""))
 
 
 class Signs(NamedTuple):
@@ -46,7 +49,7 @@ class Signs(NamedTuple):
         return [self._plain(cell) if sign in cell or "," in cell else cell for cell in cells]
 
     def _plain(self, cell: str) -> str:
-        bare = cell.strip()
+        bare = _unspaced(cell)
         if self.groups and _GROUPED[self.groups].fullmatch(bare):
             bare = bare.replace(self.groups, "")
         return bare.replace(",", ".") if self.decimal == "," and _COMMA.fullmatch(bare) else bare
@@ -70,7 +73,7 @@ def signs_of(where: str, columns: Mapping[str, Sequence[str]], rows: Sequence[in
         Commas and points stand in the numbers, and neither stands before groups of three everywhere.
     """
     looked = {
-        name: {at: cells[at].strip() for at in _looked_at(len(cells))} for name, cells in columns.items()
+        name: {at: _unspaced(cells[at]) for at in _looked_at(len(cells))} for name, cells in columns.items()
     }
     if not any("," in cell or cell.count(".") > 1 for held in looked.values() for cell in held.values()):
         return Signs()
@@ -155,6 +158,11 @@ class _Cells(NamedTuple):
 
 def _is_number(cell: str) -> bool:
     return any(form.fullmatch(cell) for form in (_PLAIN, *_GROUPED.values()))
+
+
+def _unspaced(cell: str) -> str:
+    bare = cell.strip()
+    return bare.translate(_SPACES) if not bare.isdecimal() and _SPACED.fullmatch(bare) else bare
 
 
 def _looked_at(size: int) -> Iterable[int]:

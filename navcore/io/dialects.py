@@ -83,6 +83,18 @@ DIALECTS = (
         | {"vy": "ve (cm/s)", "hdg": "heading (cdeg)"},
     ),
     _of(
+        Text("a PX4 message vehicle_gps_position"),
+        "fix_type lat lon eph vel_m_s cog_rad",
+        {
+            "timestamp": "t (us)",
+            "time_utc_usec": "unix_time",
+            "lat": "lat (1e-7 deg)",
+            "lon": "lon (1e-7 deg)",
+        }
+        | {"alt": "alt (mm)", "vel_m_s": "sog (m/s)", "cog_rad": "cog (rad)", "heading": ""}
+        | {"vel_n_m_s": "", "vel_e_m_s": ""},
+    ),
+    _of(
         Text("a MAVLink message GPS_RAW_INT"),
         "fix_type lat lon eph vel cog",
         _MAVLINK_TIMES

@@ -43,6 +43,8 @@ class Rows:
     """Columns of quantities for which another column is taken."""
     parts: tuple[str, ...] = ()
     """Parts of the time that stand in columns of their own, in the order in which the cells are joined."""
+    headers: int = 0
+    """Rows that repeat the header, which are left out."""
     others_of_kind: int = 0
     """Rows of other sensors of one kind, which are left out."""
     layout: tuple[str, str] = "", ""

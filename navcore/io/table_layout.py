@@ -3,10 +3,10 @@
 import re
 
 from navcore.io.cells import is_empty
-from navcore.io.column_names import CLOCK, QUANTITIES, SECONDS, UNIX, UTC, known_columns, plain_name
+from navcore.io.column_names import CLOCK, QUANTITIES, SECONDS, UNIX, UTC, known_columns
 from navcore.io.columns import MOST_COLUMNS
 from navcore.io.rows import split_line
-from navcore.io.written_units import UNITS, unit_of
+from navcore.io.written_units import UNITS, written
 
 COMMENTS = ("#", "%", "//")
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
@@ -100,9 +100,12 @@ def _is_number(cell: str) -> bool:
 
 
 def is_units(row: list[str]) -> bool:
-    """Whether a row below the header gives units: no cell begins with a digit or a sign, not all empty."""
-    return (
-        any(cell.strip() for cell in row)
-        and not any(cell.strip()[:1] in "+-.0123456789" or is_empty(cell) or _is_number(cell) for cell in row)
-        and any(unit_of(plain_name(cell.strip("()[] ")), dimension) for cell in row for dimension in UNITS)
-    )
+    """Whether a row below the header gives units: none of its cells is a number, and most are units.
+
+    A quantity without a unit, and the time, may have an empty cell.
+    """
+    given = [cell.strip() for cell in row if not is_empty(cell)]
+    if not given or any(cell[:1] in "+-.0123456789" or _is_number(cell) for cell in given):
+        return False
+    units = [cell for cell in given if any(written([cell.strip("()[] ")], d).unit for d in UNITS)]
+    return bool(units) and (len(given) == len(row) or 2 * len(units) > len(given))

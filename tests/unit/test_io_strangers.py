@@ -29,6 +29,7 @@ NAMES = {
     "Route fond (°)": "cog",
     "Vitesse surface (nds)": "speed",
     "Horodatage": "utc",
+    "temps (ms)": "utc",
     "Latitud": "lat",
     "BaseDateTime": "utc",
     "Bearing": "cog",

@@ -15,6 +15,12 @@ _NAMES = {
     "second": "second seconds sec ss s utc_second sekunde seconde",
     "second_of_day": "second_of_day seconds_of_day sec_of_day secs_of_day sod seconds_since_midnight",
 }
+_STAMPS = {
+    "seconds": "stamp_sec stamp_secs header_stamp_sec header_stamp_secs",
+    "nanoseconds": "stamp_nanosec stamp_nanosecs stamp_nsec stamp_nsecs header_stamp_nanosec "
+    "header_stamp_nanosecs header_stamp_nsec header_stamp_nsecs",
+}
+"""Parts of the stamp of a ROS message."""
 _KNOWN = {part: frozenset(names.split()) for part, names in _NAMES.items()}
 _LAYOUTS = (
     ("year", "doy", "second_of_day"),
@@ -41,11 +47,22 @@ def part_columns(names: Sequence[str]) -> dict[str, int]:
     return {part: places[part] for part in layout}
 
 
+def stamp_columns(names: Sequence[str]) -> dict[str, int]:
+    """Places of the seconds and nanoseconds of a ROS stamp, in plain names; empty where one is missing."""
+    found = {
+        part: next((i for i, name in enumerate(names) if name.endswith(tuple(known.split()))), -1)
+        for part, known in _STAMPS.items()
+    }
+    return {} if -1 in found.values() else found
+
+
 def times_of_parts(parts: Mapping[str, np.ndarray]) -> np.ndarray:
     """Unix time in s, shape (n,), of the parts, each of shape (n,); NaN where they are no date.
 
     A day of the year may have a fraction, where nothing finer stands beside it.
     """
+    if "nanoseconds" in parts:
+        return parts["seconds"] + 1e-9 * parts["nanoseconds"]
     year = np.where(parts["year"] < 100.0, parts["year"] + 2000.0, parts["year"])
     day = parts.get("doy", parts.get("day", np.ones(year.size)))
     month = parts.get("month", np.ones(year.size))
