@@ -31,7 +31,7 @@ _GUIDE = [
             "docs/teaching",
         ],
     ),
-    ("Theory", ["docs/theory", "docs/design", "docs/papers"]),
+    ("Theory", ["docs/theory", "docs/design", "docs/ledger", "docs/papers"]),
     ("Lessons", []),
     ("Examples", []),
     ("Project", ["docs/architecture", "CONTRIBUTING", "CHANGELOG"]),

@@ -78,7 +78,8 @@ def wilson(met: float, count: float) -> tuple[float, float]:
     middle = share + square / (2.0 * count)
     width = _Z * math.sqrt(share * (1.0 - share) / count + square / (4.0 * count * count))
     below = 1.0 + square / count
-    return max(0.0, (middle - width) / below), min(1.0, (middle + width) / below)
+    low, high = max(0.0, (middle - width) / below), min(1.0, (middle + width) / below)
+    return min(low, share), max(high, share)  # rounding must not leave the share itself outside
 
 
 def share_verdict(met: int, count: int, share: float) -> tuple[Verdict, int | None]:

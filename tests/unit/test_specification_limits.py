@@ -195,6 +195,8 @@ def test_a_share_is_met_missed_or_open_and_more_seeds_decide() -> None:
     low, before = (wilson(23 / 24 * (24 + more - k), 24 + more - k)[0] for k in (0, 1))
     assert low >= 0.9 > before
     assert share_verdict(9, 10, 0.9) == ("open", None)
+    # none of a finite number of seeds proves a share of 1, and rounding does not disprove it
+    assert {share_verdict(n, n, 1.0) for n in range(1, 300)} == {("open", None)}
 
 
 @pytest.mark.parametrize(("key", "part"), [("position_cep50_m", 0.5), ("position_r95_m", 0.95)])
