@@ -9,7 +9,8 @@ import numpy as np
 from navcore.foundation.text import Text
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import Sentences, Tally
-from navcore.io.nmea_sentences import ABOUT_OTHERS, ALONG_AXES, NOT_GIVEN, OTHER_MESSAGE, decode
+from navcore.io.nmea_makers import ABOUT_OTHERS, OTHER_MESSAGE
+from navcore.io.nmea_sentences import ALONG_AXES, NOT_GIVEN, decode
 from navcore.io.times.between import are_doubled, by_kind, coarse, filled, trusted
 from navcore.io.times.doubts import trust_of
 from navcore.io.times.repeats import there_again
