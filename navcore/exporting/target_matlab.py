@@ -35,7 +35,7 @@ def files(form: Form, prefix: str, single: bool, bounds: Sequence[float]) -> dic
         "vectors.csv": vectors_csv(form),
     }
     if form.subject.method.kind.uses_network:
-        numbers = _numbers(form.subject.network, form.subject.step_s)
+        numbers = network_lines(form.subject.network, form.subject.step_s)
         made[f"{prefix}_objects.m"] = filled("objects.m", values | {"numbers": numbers})
     return made
 
@@ -50,8 +50,8 @@ def _call(form: Form, printer: MatlabPrinter) -> str:
     return "\n".join(INDENT + line for line in lines)
 
 
-def _numbers(network: LinearNetwork, step_s: float) -> str:
-    """H(s), Q(s) = 1 - H(s) and its discrete form, with all digits."""
+def network_lines(network: LinearNetwork, step_s: float) -> str:
+    """Statements with H(s), Q(s) = 1 - H(s) and its discrete form at a step in s, with all digits."""
     discrete = discretise(network, step_s)
     difference = np.polysub(network.den, network.num)
     rows = {

@@ -1,9 +1,12 @@
 """The registry of networks and the type of a field that holds any of them."""
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
+
+from pydantic import BeforeValidator
 
 from navcore.foundation.registry import any_of, registry
 from navcore.networks.base import NetworkParameters
+from navcore.networks.pasted import is_pasted, pasted
 
 NETWORKS = registry(
     NetworkParameters,
@@ -23,5 +26,10 @@ NETWORKS = registry(
 if TYPE_CHECKING:
     Network: TypeAlias = NetworkParameters
 else:
-    Network = any_of(NETWORKS, "id")
+    Network = Annotated[
+        any_of(NETWORKS, "id"),
+        BeforeValidator(
+            lambda value: pasted(value) if isinstance(value, str) and is_pasted(value) else value
+        ),
+    ]
     """Type of a field that holds any network, told apart by ``id``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from navcore.networks.base import (
     linear_network,
     refuse,
 )
+from navcore.networks.roots import fixed
 
 _CONJUGATE_TOLERANCE = 1e-6
 _LARGEST_RATE = 1e4
@@ -169,9 +171,13 @@ class CustomNetwork(NetworkParameters):
                 list(den),
                 Text("must have poles of at most {largest_rate:g} rad/s", largest_rate=_LARGEST_RATE),
             )
-        return linear_network(
+        network = linear_network(
             "custom", omega_s, num_p, den_p, warnings=_own_stability(network.poles / omega_s)
         )
+        if den[0] != 1.0 or len(den) != len(network.den):
+            return network
+        # as given, to the last digit: what is exported and read again is the same
+        return replace(network, num=fixed(num), den=fixed(den), gain=float(num[0]))
 
 
 def _check_degrees(

@@ -1,5 +1,6 @@
 """A network from what a user types: ``id = "compass", sigma = 0.0088, xi = 0.7``."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.written_toml import mended, read_toml_text
 from navcore.networks.base import NetworkParameters
 from navcore.networks.catalogue import NETWORKS, Network
+from navcore.networks.pasted import is_pasted, pasted
 
 _ADAPTER: TypeAdapter[Any] = TypeAdapter(Network)
 _EXAMPLE = Text('must be fields such as: id = "compass", sigma = 0.0088, xi = 0.7')
@@ -22,7 +24,8 @@ def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "networ
     Parameters
     ----------
     text_or_mapping : str or mapping
-        An id, the inside of an inline TOML table, or the fields themselves.
+        An id, the inside of an inline TOML table, a transfer function as `navcore.networks.pasted` reads it,
+        or the fields themselves.
     where : str
         Place named in the faults.
 
@@ -37,13 +40,21 @@ def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "networ
     0.7
     """
     if isinstance(text_or_mapping, str):
-        data = text_or_mapping if text_or_mapping in NETWORKS else _table(text_or_mapping, where)
+        data = _of_text(text_or_mapping, where)
     else:
         data = dict(text_or_mapping)
     try:
         return _ADAPTER.validate_python(data)
     except ValidationError as error:
         raise InputError(faults_from(error, Network, data, where)) from None
+
+
+def _of_text(text: str, where: str) -> Any:
+    """An id, a transfer function or its file, or the inside of an inline table."""
+    if text in NETWORKS:
+        return text
+    fields = re.match(r"\s*\{?\s*\w+\s*=\s*[\"\d{]", text)
+    return pasted(text, where) if is_pasted(text) and not fields else _table(text, where)
 
 
 def _table(text: str, where: str) -> dict[str, Any]:
