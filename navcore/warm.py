@@ -96,7 +96,14 @@ def warm() -> None:
         simulate(_scenario({"duration_h": 0.02}, motion, 1.0, _POLICIES))
     _warm_track()
     _warm_coarse_alignment()
-    form_of(subject_of(_scenario({"duration_h": 0.02}, _MOTIONS[0], 1.0, [_NETWORK]), hours=0.02))
+    _warm_exports()
+
+
+def _warm_exports() -> None:
+    """Compile what replays an exported law, a Kalman filter and a box beside an INS."""
+    for method, outside in ((_NETWORK, False), (_KALMAN, False), (_NETWORK, True)):
+        one = _scenario({"duration_h": 0.02}, _MOTIONS[0], 1.0, [method])
+        form_of(subject_of(one, hours=0.02), outside)
 
 
 def warm_sensors() -> None:
