@@ -282,7 +282,7 @@ def test_imports_and_requirements_are_the_same_packages(repo_root: Path):
     required = {Requirement(text).name for text in project["project"]["dependencies"]}
     runtime = required | {Requirement(text).name for text in extra}
     testing = {Requirement(text).name for text in project["dependency-groups"]["test"]}
-    known = {*sys.stdlib_module_names, "docs", "navcore", "schuler_bench", "tests", "tools"}
+    known = {*sys.stdlib_module_names, "docs", "examples", "navcore", "schuler_bench", "tests", "tools"}
     providers = packages_distributions()
     used: set[str] = set()
     for packages, asked in (
