@@ -10,18 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from navcore.foundation.units import DEG, KNOT
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.unity2 import Unity2Network
-from tests.law_twin_forms import Form, adaptive, bilinear, companion, controller, damping_ratio
+from tests.law_twin_forms import Form, bilinear, companion, controller, damping_ratio
+from tests.law_twin_policies import TwinPolicies
 
 Vector = np.ndarray
 
 
-class TwinLaw:
+class TwinLaw(TwinPolicies):
     """Damping law of one method for both channels.
 
     Parameters
@@ -186,71 +186,6 @@ class TwinLaw:
     def _clear(self, u: Vector) -> None:
         self.offset = np.zeros(2)
         self.states = np.zeros_like(self.states) if self.external else np.outer(u, self.form.steady)
-
-    # policies
-
-    def _policy_constant(self, difference: Vector, valid: bool) -> bool:
-        return True
-
-    _policy_schedule = _policy_constant
-
-    def _policy_mobility(self, difference: Vector, valid: bool) -> bool:
-        self.measure = self._mean_acceleration()
-        return True
-
-    def _policy_states(self, difference: Vector, valid: bool) -> bool:
-        """0 undamped, 1 internal, 3 external: nothing acts in the azimuth."""
-        own = self.policy
-        calm = self._mean_acceleration() <= own.limit_mps2
-        near = valid and float(np.linalg.norm(difference)) <= own.difference_mps
-        self.good = self.good + 1 if near else 0
-        self.external = self.good > 0 and (self.external or self.good >= self._calls(own.return_s))
-        self.measure = (3.0 if self.external else 1.0) if calm else 0.0
-        return calm
-
-    def _policy_threshold(self, difference: Vector, valid: bool) -> bool:
-        self.measure = float(np.linalg.norm(difference))
-        return self.measure <= self.policy.limit_mps
-
-    def _policy_yaw_rate(self, difference: Vector, valid: bool) -> bool:
-        window = [row["total"] for row in self.rows[-self._calls(self.policy.window_s) - 1 :]]
-        self.measure = abs(window[-1] - window[0])
-        return self.measure <= self.policy.limit_deg * DEG
-
-    def _policy_acceleration(self, difference: Vector, valid: bool) -> bool:
-        self.measure = self._mean_acceleration()
-        return self.measure <= self.policy.limit_mps2
-
-    def _mean_acceleration(self) -> float:
-        v_c = np.array([row["v_c"] for row in self.rows])
-        sizes = np.linalg.norm(np.diff(v_c, axis=0, prepend=v_c[:1]), axis=1) / self.step_s
-        return float(np.mean(sizes[-self._calls(self.policy.mean_s) :]))
-
-    def _policy_variation(self, difference: Vector, valid: bool) -> bool:
-        n, t0 = self._calls(self.policy.n_s), self._calls(self.policy.t0_s)
-        self.measure = 0.0
-        if self.fresh >= n + t0:
-            d = np.array([row["d"] for row in self.rows[-n - t0 :]])
-            self.measure = float(np.max(np.abs(d[-n:].mean(axis=0) - d[:n].mean(axis=0))))
-        wish = self.decision
-        if self.measure <= self.policy.a:
-            wish = True
-        elif self.measure >= self.policy.c:
-            wish = False
-        self.count = 0 if wish == self.decision else self.count + 1
-        if self.count == self.policy.count:
-            self.decision, self.count = wish, 0
-        self.wish = wish
-        return self.decision
-
-    def _policy_adaptive(self, difference: Vector, valid: bool) -> bool:
-        if not valid:
-            return True
-        share = 1.0 if self.fresh == 1 else 1.0 - math.exp(-self.step_s / self.policy.lowpass_s)
-        self.low = self.low + share * (difference - self.low)
-        self.measure = float(np.linalg.norm(self.low))
-        self.target = max(adaptive(self.policy, self.measure / KNOT), self.least)
-        return True
 
     def _gains_now(self) -> Vector:
         own = self.policy

@@ -279,15 +279,21 @@ def _vector(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSp
     """One control for each element of a vector."""
     element, size = element_of(info), len(info.default)
     names = extra_of(info).get("elements") or _AXES.get(size, tuple(map(str, range(size))))
-    hint = _hint(info, allowed_range(element) if element is not None else "")
+    ends = allowed_range(element) if element is not None else ""
     allowed = (-math.inf, math.inf) if element is None else bounds_of(element)
     return [
         FieldSpec(
-            (*path, i), full_label(name, info, prefix, part), hint, "number", info.default[i], (),
-            _slider(info, i), allowed,
+            (*path, i), full_label(name, info, prefix, part), _hint(info, _with_unit(ends, part)), "number",
+            info.default[i], (), _slider(info, i), allowed,
         )
         for i, part in enumerate(names)
     ]  # fmt: skip
+
+
+def _with_unit(ends: str, part: str) -> str:
+    """Range of an element, in the unit that stands behind its own name: ``K₁ (1/s)``."""
+    unit = part.rpartition(" (")[2] if part.endswith(")") else ""
+    return Text("{ends} ({unit}", ends=ends, unit=unit) if ends and unit else ends
 
 
 def full_label(name: str, info: FieldInfo, prefix: str = "", part: str = "") -> str:
@@ -311,7 +317,7 @@ def plain_label(name: str, info: FieldInfo) -> str:
 def _hint(info: FieldInfo, allowed: str) -> str:
     text = (info.description or "").strip()
     # The elements of a vector may have units of their own, in their names.
-    if allowed and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
+    if allowed and not allowed.endswith(")") and extra_of(info).get("unit") in (None, "", "1"):
         allowed = Text("{allowed} (no unit)", allowed=allowed)
     bounds = Text("{allowed:sentence}", allowed=allowed) if allowed else ""
     return Text.joined(" ", (part for part in (text, bounds) if part))

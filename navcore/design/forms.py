@@ -73,7 +73,7 @@ def forms_of(scenario: Scenario, name: str) -> list[Form]:
 def _other_realisations(default: Method) -> Iterator[Method]:
     """Give the network in its other realisations with external damping."""
     info = type(default.network).model_fields.get("realisation")
-    if info is None or default.damping != "external":
+    if info is None or not default.kind.referenced:
         return
     offered = {choice for part in (info.annotation, *get_args(info.annotation)) for choice in get_args(part)}
     for realisation in _REALISATIONS:

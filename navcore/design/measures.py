@@ -28,7 +28,7 @@ from navcore.foundation.numbers import NotANumber, read_number
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, UNITS
 from navcore.networks.base import LinearNetwork
-from navcore.quantities import OBJECTIVES, QUANTITIES, TUNED
+from navcore.quantities import ERRORS, HEADING, OBJECTIVES, QUANTITIES, TILT, TUNED, VELOCITY, components
 from navcore.scenario.method import Method
 
 TUNING_INTERVALS = 360
@@ -144,8 +144,8 @@ class Setting:
         if scenario.truth.file is None or run.status != "ok":
             return Figures()
         of = run.errors
-        level = (_both(of["phi_e_rad"], of["phi_n_rad"]), _both(of["dve_mps"], of["dvn_mps"]))
-        return Figures(*level, _told(of["phi_u_rad"]["rms"]), _told(of["position_m"]["rms"]))
+        level = (_both(*(of[name] for name in components(kind))) for kind in (TILT, VELOCITY))
+        return Figures(*level, *(_told(of[name]["rms"]) for name in (*components(HEADING), ERRORS[-1].name)))
 
 
 def _both(east: dict[str, float], north: dict[str, float]) -> float | None:

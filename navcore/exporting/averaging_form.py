@@ -93,16 +93,16 @@ def _copies(scenario: Scenario, subject: Subject, env: Any, plan: Any) -> list[C
 
 def _outputs(truth: np.ndarray, errors: dict[str, np.ndarray], metres: tuple[np.ndarray, np.ndarray]) -> Copy:
     """Outputs of a navigation with these errors."""
-    east, north = errors["phi_e_rad"], errors["phi_n_rad"]
+    east, north, heading, v_east, v_north, lat, lon = (errors[name] for name in COMPONENTS)
     sin, cos = np.sin(truth[:, HEADING]), np.cos(truth[:, HEADING])
     return Copy(
-        truth[:, VE] + errors["dve_mps"],
-        truth[:, VN] + errors["dvn_mps"],
+        truth[:, VE] + v_east,
+        truth[:, VN] + v_north,
         truth[:, PITCH] - (east * cos - north * sin),
         truth[:, ROLL] - (east * sin + north * cos) / np.cos(truth[:, PITCH]),
-        truth[:, HEADING] + errors["phi_u_rad"],
-        truth[:, LAT] + errors["dlat_m"] / metres[0],
-        truth[:, LON] + errors["dlon_m"] / metres[1],
+        truth[:, HEADING] + heading,
+        truth[:, LAT] + lat / metres[0],
+        truth[:, LON] + lon / metres[1],
     )
 
 

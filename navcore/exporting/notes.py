@@ -8,7 +8,8 @@ from importlib import import_module
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 
-_FIELD = re.compile(r'^\s*(?:.*[(,]\s*)?"?(\w+)"?\s*[:=]\s*\(?[A-Z_]\w*.*?#\s*(.+?)\s*$')
+_NAME = re.compile(r'(\w+)"?\s*[:=]\s*\(?[A-Z_]')
+"""Name of a field before its type."""
 _SECTION = re.compile(r"^(?:    )?(\w+)(?:: ClassVar\[np.dtype\])? = (?:record_type\(|\{)")
 _OWN = {"policies": POLICIES, "switchings": SWITCHINGS}
 _WHERE = {
@@ -45,6 +46,7 @@ def _comments(module: str) -> tuple[tuple[str, str, str], ...]:
     for line in inspect.getsource(import_module(module)).splitlines():
         if match := _SECTION.match(line):
             section = match[1]
-        if match := _FIELD.match(line):
-            found.append((section, *match.groups()))
+        declared, _, note = line.partition("#")
+        if (names := _NAME.findall(declared)) and note.strip():
+            found.append((section, names[-1], note.strip()))
     return tuple(found)

@@ -129,17 +129,9 @@ def _inputs(scenario: Scenario, env: Environment, method: Method) -> np.ndarray:
 def _free_errors(scenario: Scenario, env: Environment) -> np.ndarray:
     """Errors of a free INS in the scenario: velocity, latitude, longitude, heading, shape (calls, 5)."""
     free = scenario.model_copy(update={"method": (Method(name="free"),), "requirement": ()})
-    rows = dict(zip(COMPONENTS, simulate(free).methods[0].rows.T, strict=False))
+    _, _, heading, east, north, lat, lon = simulate(free).methods[0].rows.T[: len(COMPONENTS)]
     half = env.coefficients.half[::2] if len(env.coefficients.half) > 1 else env.coefficients.half
-    return np.column_stack(
-        [
-            rows["dve_mps"],
-            rows["dvn_mps"],
-            rows["dlat_m"] / half["m"],
-            rows["dlon_m"] / half["n_cos"],
-            rows["phi_u_rad"],
-        ]
-    )
+    return np.column_stack([east, north, lat / half["m"], lon / half["n_cos"], heading])
 
 
 def _notes(ship_axes: bool) -> dict[str, str]:
@@ -158,7 +150,7 @@ def _notes(ship_axes: bool) -> dict[str, str]:
         "lat_out_rad": "damped latitude",
         "lon_out_rad": "damped longitude",
         "yaw_out_rad": "damped heading",
-        "phi_e_rad": "damped minus given attitude, about east",
-        "phi_n_rad": "damped minus given attitude, about north",
-        "phi_u_rad": "damped minus given attitude, about up",
+    } | {
+        name: f"damped minus given attitude, about {axis}"
+        for name, axis in zip(COMPONENTS, ("east", "north", "up"), strict=False)
     }

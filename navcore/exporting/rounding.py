@@ -19,6 +19,7 @@ from navcore.foundation.earth import SEMI_MAJOR_AXIS
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC
 from navcore.networks.discrete import DiscreteNetwork, discretise
+from navcore.quantities import TILT, VELOCITY
 
 _MARGIN, _LEAST = 4.0, 1e-6
 """The bound is so many times what was measured, and at least so much of the peak."""
@@ -61,8 +62,8 @@ class Rounding:
             return value if math.isfinite(value) else None
 
         return {
-            "tilt_rad": finite(self.tilt_rad),
-            "velocity_mps": finite(self.velocity_mps),
+            TILT.figure: finite(self.tilt_rad),
+            VELOCITY.figure: finite(self.velocity_mps),
             "pole_shift": finite(self.pole_shift),
             "direct_form_largest_pole": finite(self.direct_radius),
             "other_decisions": self.other_decisions,

@@ -83,8 +83,7 @@ def _before_corrections(
         True latitude, rad, and radius, m.
     """
     off = corrections_of(subject)[: len(lat)]
-    places = {"dve_mps": 0, "dvn_mps": 1, "phi_e_rad": 4, "phi_n_rad": 5, "phi_u_rad": 6}
-    for name, place in places.items():
+    for name, place in zip(COMPONENTS, (4, 5, 6, 0, 1), strict=False):
         errors[name] += off[:, place]
     errors["dlat_m"] += off[:, 2] * meridian
 

@@ -78,5 +78,5 @@ class WorstQuestion(Question):
 
         assert isinstance(answer, Worst)
         with placing(out, names_of(self.scenario), [*reads, *self.recordings()]) as hidden:
-            for name, text in files_of(answer):
+            for name, text in files_of(answer.scenario, answer.logs, answer.playable):
                 (hidden / name).write_bytes(utf8(text))

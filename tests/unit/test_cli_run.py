@@ -48,6 +48,7 @@ LOOP_KEYS = [
     "slow_mode_damping_ratio",
     "slow_mode_natural_frequency_rad_s",
     "growth_per_s",
+    "heading_settling_s",
 ]
 
 
@@ -82,6 +83,7 @@ def test_json_is_one_document_with_the_contracts_keys(capsys):
         "slow_mode_damping_ratio": pytest.approx(0.0, abs=1e-9),
         "slow_mode_natural_frequency_rad_s": pytest.approx(EARTH_RATE, rel=2e-2),
         "growth_per_s": 0.0,
+        "heading_settling_s": None,
     }
     assert "undamped" in free["warnings"]
 

@@ -175,7 +175,7 @@ def test_what_the_system_refuses_is_one_line(
 
 
 def test_a_fault_of_the_program_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("navcore.scenario.file.load", lambda *_: int("x"))
+    monkeypatch.setattr("navcore.scenario.file.load", lambda *_, **__: int("x"))
     with pytest.raises(ValueError, match="invalid literal"):
         main(["run", "zha-fast"])
     assert refused_by_the_system(RuntimeError("deque mutated")) == ""

@@ -97,6 +97,7 @@ def test_each_part_of_the_law_is_exported_as_it_runs(tmp_path: Path) -> None:
 
 @needs_compiler
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_every_law_of_the_catalogue_is_exported_as_it_runs(tmp_path: Path) -> None:
     inputs, subjects = busy_inputs(), []
     for method in every_law():
@@ -195,10 +196,10 @@ def test_without_a_sample_the_last_one_counts_for_the_time_of_the_run() -> None:
 @pytest.mark.parametrize("method", [FEW[10], FEW[13]])
 def test_sanitizers_find_nothing(tmp_path: Path, method: dict[str, Any]) -> None:
     """Addresses and undefined behaviour, over the vectors."""
-    from navcore.exporting.target_c import files
+    from navcore.exporting.target_c import double_bounds, files
 
     form = law_form(subject(method), busy_inputs(2000))
-    for name, text in files(form, "law", False, 1e-12).items():
+    for name, text in files(form, "law", False, double_bounds(form)).items():
         (tmp_path / name).write_text(text)
     command = f"{compiler()} -std=c99 -Wall -Wextra -Werror -Wconversion -g -fsanitize=address,undefined"
     subprocess.run([*command.split(), "law.c", "test.c", "-lm", "-o", "t"], cwd=tmp_path, check=True)

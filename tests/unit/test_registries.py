@@ -12,7 +12,7 @@ from navcore.analysis.placement import place
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
-from navcore.foundation.parameters import Parameters, allowed_range, extra_of
+from navcore.foundation.parameters import Parameters, allowed_range, element_of, extra_of
 from navcore.foundation.registry import blocks_of, registry
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
@@ -117,8 +117,11 @@ def test_every_field_has_help_and_a_unit_or_a_list_of_words(part: str, name: str
             words = get_origin(info.annotation) or info.annotation in (bool, str)
             assert "unit" in told or "label" in told or words, f"{name}.{field} has neither unit nor label"
             if "slider" in told:
-                low, high = told["slider"]
-                assert low < high and {">", "<"} <= set(allowed_range(info)), f"{name}.{field}"
+                sliders = told["slider"] if isinstance(told["slider"][0], list | tuple) else [told["slider"]]
+                ranged = info if len(sliders) == 1 else element_of(info)
+                for low, high in sliders:
+                    assert low < high and {">", "<"} <= set(allowed_range(ranged)), f"{name}.{field}"
+                low, high = sliders[0]
                 assert not isinstance(info.default, float) or low <= info.default <= high, f"{name}.{field}"
 
 

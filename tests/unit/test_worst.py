@@ -20,9 +20,8 @@ from navcore.design.worst.bounded import worst
 from navcore.design.worst.logs import steps
 from navcore.design.worst.played import silent
 from navcore.design.worst.rate import worst_within_rate
-from navcore.design.worst.result import FILE_KEYS, Worst
 from navcore.design.worst.searched import Player
-from navcore.design.worst.written import files_of, names_of
+from navcore.design.worst.written import FILE_KEYS, Worst, files_of, names_of
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
@@ -54,7 +53,7 @@ def scenario_of(*methods: dict[str, Any], **blocks: Any) -> Scenario:
 
 def played(found: Worst, folder: Path) -> dict[str, np.ndarray]:
     """Largest errors of a run under each log that is written, by method."""
-    for name, text in files_of(found):
+    for name, text in files_of(found.scenario, found.logs, found.playable):
         (folder / name).write_text(text)
     shown = {}
     for place, method in enumerate(found.methods):
@@ -144,7 +143,7 @@ def test_a_loop_that_grows_beyond_the_model_has_no_bound() -> None:
     scenario = scenario_of(fast, run={"duration_h": 24.0}, reference={"rate_hz": 0.002})
     found = worst(scenario, 1.0)
     assert found.failed and found.document()["methods"][0]["tilt_rad"] == [None, None]
-    assert [*files_of(found)] == []
+    assert [*files_of(found.scenario, found.logs, found.playable)] == []
 
 
 def test_levels_are_reached_within_the_rate() -> None:

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 Bound = Literal["exact", "found"]
 _KNOWN: dict[Bound, str] = {"exact": Text("exact"), "found": Text("found, not proven")}
-FILE_KEYS = ("tilt_e", "tilt_n", "heading", "velocity_e", "velocity_n", "lat", "lon")
-"""Names of the errors in names of files, in the order of `navcore.quantities.COMPONENTS`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +126,12 @@ class Worst(Answer):
         from navcore.design.worst.written import files_of
 
         (method, k) = self.playable[place]
-        return dict(files_of(self, [(method, k)]))
+        return dict(files_of(self.scenario, self.logs, [(method, k)]))
+
+    @property
+    def logs(self) -> list[Sequence[LogError]]:
+        """Worst log of each method, for each error."""
+        return [one.logs for one in self.methods]
 
     @property
     def playable(self) -> list[tuple[int, int]]:
