@@ -20,8 +20,9 @@ from navcore.design.worst.bounded import worst
 from navcore.design.worst.logs import steps
 from navcore.design.worst.played import silent
 from navcore.design.worst.rate import worst_within_rate
+from navcore.design.worst.result import Worst
 from navcore.design.worst.searched import Player
-from navcore.design.worst.written import FILE_KEYS, Worst, files_of, names_of
+from navcore.design.worst.written import FILE_KEYS, files_of, names_of
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
