@@ -1,7 +1,7 @@
 """Noise of a standing IMU: white noise and Gauss-Markov drift by likelihood, beside its Allan deviation.
 
-The Allan deviation shows what the record holds at each averaging time; `allantools` computes it with its
-chi-square intervals (Stein, 1985). White noise and drift come from the likelihood of `navcore.fitting.drift`,
+The Allan deviation shows what the record holds at each averaging time, with the chi-square intervals of white
+noise (NIST SP 1065: overlapping estimate, equation 11; degrees of freedom, table 5; interval, 45). White noise and drift come from the likelihood of `navcore.fitting.drift`,
 each axis by itself. A drift that does not level off within the record is a rate walk as well: both have then
 the same likelihood.
 """
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.stats import chi2
 
 from navcore.fitting.drift import Estimate, Posterior, blocks_of, posterior
 from navcore.foundation.answers import Answer, Column, Table
@@ -233,19 +234,18 @@ def allan_deviation(rates: np.ndarray, rate_hz: float) -> Allan:
     rate_hz : float
         Readings a second.
     """
-    import allantools
-
     several = max(1, rates.size // _ALLAN_SAMPLES)
     means = rates[: rates.size // several * several].reshape(-1, several).mean(axis=1)
-    rate_hz /= several
+    step_s = several / rate_hz
     most = means.size // (_FEWEST_PAIRS + 1)
     factors = 2 ** np.arange(int(np.log2(max(most, 1))) + 1)
-    tau_s, deviation, _, _ = allantools.oadev(means, rate_hz, "freq", factors / rate_hz)
-    ends = []
-    for factor, value in zip(np.rint(tau_s * rate_hz).astype(int), deviation, strict=True):
-        freedom = allantools.edf_simple(means.size + 1, int(factor), 0)
-        ends.append(allantools.confidence_interval(value, freedom, ci=0.95) if value > 0.0 else (0.0, 0.0))
-    low, high = np.array(ends, float).T
+    phase = step_s * np.concatenate([[0.0], np.cumsum(means - means.mean())])
+    pairs = [phase[2 * m :] - 2.0 * phase[m:-m] + phase[: -2 * m] for m in factors]
+    tau_s = step_s * factors
+    deviation = np.array([np.sqrt(0.5 * np.mean(pair**2)) for pair in pairs]) / tau_s
+    n, m = float(phase.size), factors.astype(float)
+    freedom = (1.5 * (n - 1.0) / m - 2.0 * (n - 2.0) / n) * 4.0 * m**2 / (4.0 * m**2 + 5.0)
+    low, high = (deviation * np.sqrt(freedom / chi2.ppf(share, freedom)) for share in (0.975, 0.025))
     return Allan(tau_s, deviation, low, high)
 
 
