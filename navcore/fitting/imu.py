@@ -1,9 +1,9 @@
 """Noise of a standing IMU: white noise and Gauss-Markov drift by likelihood, beside its Allan deviation.
 
-The Allan deviation shows what the record holds at each averaging time, with the chi-square intervals of white
-noise (NIST SP 1065: overlapping estimate, equation 11; degrees of freedom, table 5; interval, 45). White noise
-and drift come from the likelihood of `navcore.fitting.drift`, each axis by itself. A drift that does not level
-off within the record is a rate walk as well: both have then the same likelihood.
+The Allan deviation shows what the record holds at each averaging time, with the chi-square intervals of
+white noise (NIST SP 1065: overlapping estimate, equation 11; degrees of freedom, table 5; interval, 45).
+White noise and drift come from the likelihood of `navcore.fitting.drift`, each axis by itself. A drift that
+does not level off within the record is a rate walk as well: both have then the same likelihood.
 """
 
 from collections.abc import Iterator
