@@ -131,6 +131,7 @@ class Column:
             self._add(view)
         elif not stands and view.title in self._tabs:
             self._tabs.pop(view.title).remove()
+            self._faults.forget(view)
 
     def behind(self, front: Set[str]) -> set[str]:
         """Titles of the tabs behind those in front; none while ``front`` is unknown, and so empty."""

@@ -38,6 +38,10 @@ class ViewFaults:
         """Make the place, at the top of the view's tab, where its faults are shown."""
         self._places[view] = self._client.gui.add_html(self._note(view), order=-2)
 
+    def forget(self, view: View) -> None:
+        """Forget the place of a view whose tab has been removed; its next fault is a notice."""
+        self._places.pop(view, None)
+
     def call(self, step: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
         """Call a view's method; return None where it fails. Its fault is shown until the method succeeds."""
         method: Any = step
