@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
 
 from navcore.fitting.drift import Estimate, Posterior, blocks_of, posterior
 from navcore.foundation.answers import Answer, Column, Table
@@ -234,6 +233,8 @@ def allan_deviation(rates: np.ndarray, rate_hz: float) -> Allan:
     rate_hz : float
         Readings a second.
     """
+    from scipy.stats import chi2
+
     several = max(1, rates.size // _ALLAN_SAMPLES)
     means = rates[: rates.size // several * several].reshape(-1, several).mean(axis=1)
     step_s = several / rate_hz

@@ -16,7 +16,7 @@ from navcore.study.results import Folder
 from schuler_bench.cli import main
 from tests.studies import LATITUDE, NOISE, SHIP, stored, write
 
-KILLS, SEEDS = 20, 120
+KILLS, SEEDS = 20, 180
 RUNS = 2 * 8 * SEEDS
 """More work than one and twenty commands do that keep a part each, on a machine twice as fast."""
 

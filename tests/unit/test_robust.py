@@ -75,7 +75,7 @@ def test_what_is_tuned_for_the_spread_is_worst_no_worse_than_what_is_tuned_for_t
     """Of each network both settings are judged; over the spread the better one is taken."""
     found = robust_designs(_scenario(), _study(), 20)
     alone = designs(_scenario(), 4)
-    tuned = _scenario().model_copy(update={"method": tuple(share.method for share in alone.methods)})
+    tuned = _scenario().model_copy(update={"method": tuple(share.method for share in alone.methods[:12])})
     kept = robust_designs(tuned, _study(), 20, as_set=True)
     best, before = found.methods[0], kept.methods[0]
     assert best.counted >= before.counted - 0.1
