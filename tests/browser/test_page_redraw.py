@@ -12,9 +12,10 @@ import pytest
 from navcore.engine.measures import metrics
 from schuler_bench.bridge.controls import in_single
 from schuler_bench.editing import edits
+from schuler_bench.session.display import CURVES
 from schuler_bench.session.shown import shown
 from schuler_bench.shell.reports import run_element
-from schuler_bench.views.errors.view import _SMALL, OVERVIEW, error_curves
+from schuler_bench.views.errors.view import error_curves
 from schuler_bench.views.study.view import StudyView
 from tests.browser.conftest import Another, Served
 from tests.browser.driver import Bench
@@ -204,7 +205,7 @@ def test_html_that_is_put_into_the_page_in_pieces_is_the_whole(bench: Bench) -> 
 
 def wrong_curves(page: Bench) -> list[str]:
     """Name the curves of the session's run that a page does not show, or shows otherwise."""
-    plots = error_curves(shown(page.session), _SMALL[OVERVIEW]).plots.values()
+    plots = error_curves(shown(page.session), CURVES["overview"]).plots.values()
     found, wrong = page.page.evaluate("look.curves"), []
     for plot in plots:
         label, names = plot.axes()[1]["label"], ("time", *plot.names)
