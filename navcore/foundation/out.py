@@ -15,7 +15,7 @@ import re
 import secrets
 import shutil
 import stat
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
@@ -200,16 +200,46 @@ def require_file(
         without ``force``, the file is write-protected, or is none that the command wrote and that was not
         edited since.
     """
+    allowed = Text(
+        "is there already, and is not what schuler {command} wrote (or was edited since): give "
+        "another name, or --force to replace it",
+        command=command,
+    )
+    require_own(target, lambda path: written_by(command, path), allowed, reads, force=force, option=option)
+
+
+def require_own(
+    target: PathLike,
+    own: Callable[[Path], bool],
+    allowed: str,
+    reads: Iterable[PathLike] = (),
+    *,
+    force: bool = False,
+    option: str = OUT,
+) -> None:
+    """Refuse a file that cannot be written, or that is there and is not one's own.
+
+    Parameters
+    ----------
+    target : path
+        May be missing; its folder must be there.
+    own : callable
+        Whether a file that is there may be replaced without ``force``.
+    allowed : str
+        Said of one that may not.
+    reads, force, option
+        See `require_file`.
+
+    Raises
+    ------
+    InputError
+        See `require_file`.
+    """
     target = Path(target)
     with writing(target, option):
         if os.path.lexists(target):
             require_replaceable(target, identities(reads), option, force=force)
-            if not force and not written_by(command, target):
-                allowed = Text(
-                    "is there already, and is not what schuler {command} wrote (or was edited since): give "
-                    "another name, or --force to replace it",
-                    command=command,
-                )
+            if not force and not own(target):
                 raise refused(target, allowed, option)
         elif not target.parent.exists():
             raise refused(target, Text("cannot be written: there is no such folder"), option)

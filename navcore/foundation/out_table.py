@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from pathlib import Path
 
 from navcore.foundation.inputs import read_bytes
-from navcore.foundation.out import (
-    OUT,
-    PathLike,
-    identities,
-    refused,
-    require_replaceable,
-    require_writable,
-    utf8,
-    whole,
-    writing,
-)
+from navcore.foundation.out import OUT, PathLike, require_own, utf8, whole, writing
 from navcore.foundation.text import Text
 
 _MOST_BYTES = 1 << 28
@@ -47,18 +36,12 @@ def require_table(
     InputError
         See `require_file`.
     """
-    target = Path(target)
-    with writing(target, option):
-        if os.path.lexists(target):
-            require_replaceable(target, identities(reads), option, force=force)
-            if not force and read_bytes(target, _MOST_BYTES).split(b"\n")[0].strip() != heading.encode():
-                allowed = Text(
-                    "is there already, and is not such a table: give another name, or --force to replace it"
-                )
-                raise refused(target, allowed, option)
-        elif not target.parent.exists():
-            raise refused(target, Text("cannot be written: there is no such folder"), option)
-        require_writable(target.parent, option, target)
+    allowed = Text("is there already, and is not such a table: give another name, or --force to replace it")
+
+    def own(path: Path) -> bool:
+        return read_bytes(path, _MOST_BYTES).split(b"\n")[0].strip() == heading.encode()
+
+    require_own(target, own, allowed, reads, force=force, option=option)
 
 
 def write_table(
