@@ -5,11 +5,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from navcore.foundation.compiled import inlined
-from navcore.foundation.parameters import quantity
 from navcore.foundation.records import COUNT, REAL, record_type
-from navcore.foundation.text import Text
 from navcore.law.history import USE_ACCELERATION, auxiliary, slide
 from navcore.law.policy.base import Limit, Measure, PolicyParameters, calls
+from navcore.law.policy.mean_acceleration import acceleration_limit, averaging_time
 
 
 @inlined
@@ -34,29 +33,8 @@ class Acceleration(PolicyParameters):
     keeps_time: ClassVar[bool] = True
     measure: ClassVar[Measure | None] = Measure("mean |a|", "m/s2", 1.0)
     id: Literal["acceleration"] = "acceleration"
-    limit_mps2: float = quantity(
-        0.01,
-        unit="m/s2",
-        gt=0.0,
-        le=100.0,
-        slider=(0.001, 1.0),
-        log=True,
-        label=Text("acceleration limit"),
-        help=Text(
-            "Undamped while the mean of |a| exceeds this (Sun 2017, 1); |a| is the rate of change of the"
-            " computed velocity."
-        ),
-    )
-    mean_s: float = quantity(
-        20.0,
-        unit="s",
-        gt=0.0,
-        le=3600.0,
-        slider=(1.0, 300.0),
-        log=True,
-        label=Text("averaged over"),
-        help=Text("Time over which |a| is averaged."),
-    )
+    limit_mps2: float = acceleration_limit()
+    mean_s: float = averaging_time()
 
     def packed(self, law_step_s: float) -> dict[str, Any]:
         """Window and limit."""

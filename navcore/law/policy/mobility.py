@@ -14,6 +14,7 @@ from navcore.foundation.text import Text
 from navcore.law.history import USE_ACCELERATION, auxiliary, slide
 from navcore.law.policy.base import Limit, Measure, calls
 from navcore.law.policy.compass_gains import GainPolicy, put_gains
+from navcore.law.policy.mean_acceleration import averaging_time
 from navcore.networks.base import refuse
 
 
@@ -105,16 +106,7 @@ class Mobility(GainPolicy):
         label=Text("manoeuvring from"),
         help=Text("Mean of |a| from which on the decay rate is that of a manoeuvring ship."),
     )
-    mean_s: float = quantity(
-        20.0,
-        unit="s",
-        gt=0.0,
-        le=3600.0,
-        slider=(1.0, 300.0),
-        log=True,
-        label=Text("averaged over"),
-        help=Text("Time over which |a| is averaged."),
-    )
+    mean_s: float = averaging_time()
 
     @model_validator(mode="after")
     def _apart(self) -> Mobility:

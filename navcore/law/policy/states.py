@@ -15,6 +15,7 @@ from navcore.foundation.records import COUNT, REAL, record_type
 from navcore.foundation.text import Text
 from navcore.law.history import USE_ACCELERATION, auxiliary, slide
 from navcore.law.policy.base import Measure, PolicyParameters, calls
+from navcore.law.policy.mean_acceleration import acceleration_limit, averaging_time
 from navcore.law.records import E, N
 from navcore.networks.base import NetworkParameters
 
@@ -70,29 +71,8 @@ class States(PolicyParameters):
         Text("state: 0 undamped, 1 internal, 2 internal whole, 3 external, 4 external whole"), "1", 1.0
     )
     id: Literal["states"] = "states"
-    limit_mps2: float = quantity(
-        0.01,
-        unit="m/s2",
-        gt=0.0,
-        le=100.0,
-        slider=(0.001, 1.0),
-        log=True,
-        label=Text("acceleration limit"),
-        help=Text(
-            "Undamped while the mean of |a| exceeds this (Sun 2017, 1); |a| is the rate of change of the"
-            " computed velocity."
-        ),
-    )
-    mean_s: float = quantity(
-        20.0,
-        unit="s",
-        gt=0.0,
-        le=3600.0,
-        slider=(1.0, 300.0),
-        log=True,
-        label=Text("averaged over"),
-        help=Text("Time over which |a| is averaged."),
-    )
+    limit_mps2: float = acceleration_limit()
+    mean_s: float = averaging_time()
     difference_mps: float = quantity(
         1.0,
         unit="m/s",
