@@ -221,13 +221,11 @@ def require_own(
 
     Parameters
     ----------
-    target : path
-        May be missing; its folder must be there.
     own : callable
         Whether a file that is there may be replaced without ``force``.
     allowed : str
         Said of one that may not.
-    reads, force, option
+    target, reads, force, option
         See `require_file`.
 
     Raises
