@@ -25,7 +25,7 @@ from schuler_bench.plots.units import (
     wanted_unit,
 )
 from schuler_bench.plots.uplot import Curve, Dash, UplotFigure
-from schuler_bench.session.display import Display
+from schuler_bench.session.display import CURVES, Display
 
 _CUT = 3.0
 """A diverged method is drawn up to this many times the largest value of the others."""
@@ -51,13 +51,17 @@ _BAND = "2E"
 TITLES = {error.key: error.title for error in ERRORS}
 """Titles of the plots of `error_plots` by key."""
 
+STACKS: dict[str, str] = {
+    Text("Attitude"): "attitude",
+    Text("Velocity"): "velocity",
+    Text("Position"): "position",
+}
+"""Titles of the groups of `schuler_bench.session.display.CURVES` whose plots stand one above the other."""
 GROUPS: dict[str, tuple[str, ...]] = {
     "Overview": ("phi_e", "phi_n", "dve", "dvn", "position"),
-    Text("Attitude"): ("phi_e", "phi_n", "phi_u"),
-    "Velocity": ("dve", "dvn"),
-    "Position": ("position", "dlat", "dlon"),
+    **{title: CURVES[group] for title, group in STACKS.items()},
 }
-"""Stacks of plots that belong together: title of a tab -> keys of `error_plots`, top to bottom."""
+"""Stacks of plots that belong together: title -> keys of `error_plots`, top to bottom."""
 
 
 @dataclass(frozen=True)

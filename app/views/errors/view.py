@@ -15,7 +15,7 @@ from schuler_bench.plots.legend import COMMAND, entry
 from schuler_bench.plots.pinned import Pinned, pinned_methods
 from schuler_bench.plots.table import cell
 from schuler_bench.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure, stack_heights
-from schuler_bench.session.display import Display
+from schuler_bench.session.display import CURVES, Display
 from schuler_bench.session.requirements import error_limits
 from schuler_bench.session.shown import Shown, Verified
 from schuler_bench.shell import notices
@@ -23,7 +23,7 @@ from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.stack import Stack, room_px
 from schuler_bench.shell.view import Figures, Frame, PictureView, Tab, if_user
 from schuler_bench.views.errors.figure import (
-    GROUPS,
+    STACKS,
     STRAPDOWN,
     TITLES,
     VERIFIED,
@@ -109,9 +109,7 @@ ALL = Text("All errors, small")
 _GROUPS: dict[str, str] = {
     OVERVIEW: "overview",
     ALL: "all",
-    Text("Attitude"): "attitude",
-    Text("Velocity"): "velocity",
-    Text("Position"): "position",
+    **STACKS,
     VERIFICATION: "verification",
 }
 """Titles of the groups of `schuler_bench.session.display.CURVES`."""
@@ -233,10 +231,9 @@ class ErrorsView(PictureView[ErrorCurves]):
     def sheet(self, found: Shown) -> list[tuple[str, Figures]]:
         """Attitude, velocity and position, each in one picture; both models of a verification."""
         plots = error_curves(found).plots
-        groups = {name: keys for name, keys in GROUPS.items() if name != OVERVIEW}
         pictures: list[tuple[str, Figures]] = [
-            (Text("Errors: {name}", name=name), (None, [plots[key] for key in keys]))
-            for name, keys in groups.items()
+            (Text("Errors: {name}", name=name), (None, [plots[key] for key in CURVES[group]]))
+            for name, group in STACKS.items()
         ]
         if found.verified is not None:
             both = _verified_curves(found.verified, found.display).plots
