@@ -58,6 +58,21 @@ SHIP: dict[str, Any] = {
     ],
     "requirement": LIMITS,
 }
+MEASURED = [
+    "heading_seclat_rms_arcmin",
+    "heading_seclat_max_arcmin",
+    "roll_rms_arcmin",
+    "roll_max_arcmin",
+    "pitch_rms_arcmin",
+    "pitch_max_arcmin",
+    "position_cep50_m",
+    "position_r95_m",
+    "position_2drms_m",
+    "position_trms_m",
+    "position_rate_cep_nmph",
+    "reset_interval_h",
+]
+"""Quantities of `LIMITS` that a single run measures, and each of its seeds."""
 
 
 def ship(**blocks: Any) -> Scenario:
@@ -95,20 +110,7 @@ def expected(one: Requirement, run: Run, method: MethodRun) -> float:
 
 @pytest.mark.known(
     "twin",
-    [
-        "heading_seclat_rms_arcmin",
-        "heading_seclat_max_arcmin",
-        "roll_rms_arcmin",
-        "roll_max_arcmin",
-        "pitch_rms_arcmin",
-        "pitch_max_arcmin",
-        "position_cep50_m",
-        "position_r95_m",
-        "position_2drms_m",
-        "position_trms_m",
-        "position_rate_cep_nmph",
-        "reset_interval_h",
-    ],
+    MEASURED,
     kinds=["free", "external"],
     fidelities=["error_model", "strapdown"],
     source="the rows at every step",
@@ -124,20 +126,7 @@ def test_a_run_measures_what_its_steps_say(fidelity: str) -> None:
 
 @pytest.mark.known(
     "twin",
-    [
-        "heading_seclat_rms_arcmin",
-        "heading_seclat_max_arcmin",
-        "roll_rms_arcmin",
-        "roll_max_arcmin",
-        "pitch_rms_arcmin",
-        "pitch_max_arcmin",
-        "position_cep50_m",
-        "position_r95_m",
-        "position_2drms_m",
-        "position_trms_m",
-        "position_rate_cep_nmph",
-        "reset_interval_h",
-    ],
+    MEASURED,
     kinds=["free", "external"],
     fidelities=["seeds"],
     source="single runs",
