@@ -14,7 +14,7 @@ def known_mark(key: str, method: Method, fidelity: str) -> str:
     words = known_words(key, method, fidelity)
     hint = Text("How it is known: {words}", words=words)
     if way == "oracle":
-        hint = Text("{hint} ({sources})", hint=hint, sources="; ".join(sources(key)))
+        hint = Text("{hint} ({sources})", hint=hint, sources=Text.joined("; ", sources(key)))
     return cell(MARKS[way], "sb-known", tag="span", title=hint)
 
 

@@ -103,7 +103,7 @@ def test_tabs_stand_in_groups_and_the_rest_in_a_list(sized: Bench) -> None:
     sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
     run, switching = ["Errors", "Spectrum", "Metrics"], ["Errors", "Spectrum", "Switching", "Metrics"]
     network = [["Network", ["Frequency", "Poles", "Step", "Diagram"]]]
-    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare", "Sweep", "Study"]]
+    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare", "Sweep", "Study", "Ask"]]
 
     def groups(tabs: list[str]) -> list[object]:
         below = [["Run", tabs], decide]

@@ -82,12 +82,16 @@ def script_texts() -> Iterator[Text]:
 
 
 def _assets() -> Iterator[Text]:
+    from navcore.quantities.known import ledger
     from navcore.scenario.file import load, presets
     from schuler_bench.views.learn.lessons import lessons, to_html
 
     for entry, fields in tomllib.loads(asset_path("explain.toml").read_text(encoding="utf-8")).items():
         for name in ("says", "source"):
             yield from pieces(fields.get(name, ""), f"explain.toml: {entry}", prose=name == "says")
+    for entry in ledger():
+        if entry.by == "oracle":
+            yield Text(entry.source, "ledger.json", prose=True)
     for name in presets():
         scenario = load(name)
         yield from pieces(scenario.title, f"presets/{name}.toml")
