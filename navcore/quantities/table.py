@@ -81,7 +81,7 @@ _ROWS = (
     ),
     Quantity(
         "worst_tilt",
-        {"loop": Text("worst tilt, log within 1 m/s")},
+        {"loop": Text("worst tilt, log ±1 m/s")},
         "rad",
         "arcsec",
         Text(
@@ -91,7 +91,7 @@ _ROWS = (
     ),
     Quantity(
         "worst_velocity",
-        {"loop": Text("worst velocity error, log within 1 m/s")},
+        {"loop": Text("worst velocity error, log ±1 m/s")},
         "m/s",
         "m/s",
         Text(
