@@ -8,7 +8,7 @@ from importlib import import_module
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 
-_NAME = re.compile(r'(\w+)"?\s*[:=]\s*\(?[A-Z_]')
+_NAME = re.compile(r'\b(\w+)"?\s*[:=]\s*\(?[A-Z_]')
 """Name of a field before its type."""
 _SECTION = re.compile(r"^(?:    )?(\w+)(?:: ClassVar\[np.dtype\])? = (?:record_type\(|\{)")
 _OWN = {"policies": POLICIES, "switchings": SWITCHINGS}

@@ -53,7 +53,7 @@ def _of_text(text: str, where: str) -> Any:
     """An id, a transfer function or its file, or the inside of an inline table."""
     if text in NETWORKS:
         return text
-    fields = re.match(r"\s*\{?\s*\w+\s*=\s*[\"\d{]", text)
+    fields = re.match(r"\s*(?:\{\s*)?\w+\s*=\s*[\"\d{]", text)
     return pasted(text, where) if is_pasted(text) and not fields else _table(text, where)
 
 

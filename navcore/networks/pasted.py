@@ -21,11 +21,11 @@ _SPHERE_OMEGA_S = 1.24e-3
 """Schuler frequency of a sphere, rad/s, for the judgement of a loop (theory.md 3.6)."""
 _FAST_RAD_S = 0.3
 """Mean size of zeros and poles from which a network is none in rad/s."""
-_CALL = re.compile(r"\b(tf|zpk)\s*\((.*)\)\s*;?\s*$", re.DOTALL)
+_CALL = re.compile(r"\b(tf|zpk)\s*\((.*)", re.DOTALL)
+"""A call without its closing bracket."""
 _LIST = re.compile(r"\[([^\[\]]*)\]")
-_POWER_OF_TEN = re.compile(
-    r"(\d+\.?\d*|\.\d+)\s*(?:\\times|\\cdot|×|·|\*)\s*10\s*\^\s*\{?\s*([-−+]?\d+)\s*\}?"
-)
+_POWER_OF_TEN = re.compile(r"(\d\.?)\s*(?:\\times|\\cdot|×|·|\*)\s*10\s*\^\s*\{?\s*([-−+]?\d+)\s*\}?")
+"""From the last digit of the factor on: its start cannot be found in linear time."""
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<frac>\\[dt]?frac)|(?P<s>s)|"
     r"(?P<sign>\\times|\\cdot|[-+*/^(){}×·]))"
@@ -150,7 +150,7 @@ def _of_matlab(text: str) -> _Ratio:
         num, den = (_numbers(one[1]) for one in found if one)
         return _Ratio(num.real, den.real)
     for line in lines.splitlines():
-        if (call := _CALL.search(line)) and len(_LIST.findall(call[2])) >= 2:
+        if (call := _call_at_end_of(line)) and len(_LIST.findall(call[2])) >= 2:
             return _of_call(call[1], call[2])
     raise _UnreadableError(Text("must hold num = [...]; den = [...]; or tf([...], [...])"))
 
@@ -160,13 +160,19 @@ def _of_matlab(text: str) -> _Ratio:
 
 def _of_text(text: str) -> _Ratio:
     plain = text.strip().rstrip(";").strip()
-    if call := _CALL.search(plain):
+    if call := _call_at_end_of(plain):
         return _of_call(call[1], call[2])
     plain = re.sub(r"^[A-Za-z_]\w*\s*(\(\s*s\s*\))?\s*=", "", plain).strip("$ \n")
     plain = plain.replace("\\left", "").replace("\\right", "").replace("\\,", " ").replace("−", "-")
     plain = plain.replace("\\;", " ").replace("\\!", "")
     plain = _POWER_OF_TEN.sub(r"\1e\2", plain)
     return _Parser(plain).whole()
+
+
+def _call_at_end_of(text: str) -> re.Match[str] | None:
+    """A call of tf or zpk that the text ends with: kind, and what is between its brackets."""
+    plain = text.strip().rstrip(";").rstrip()
+    return _CALL.search(plain[:-1]) if plain.endswith(")") else None
 
 
 def _of_call(kind: str, inside: str) -> _Ratio:
