@@ -203,23 +203,39 @@ class Compensator:
         Raises
         ------
         numpy.linalg.LinAlgError
-            A mode does not decay: no balanced form exists.
+            A mode does not decay, or not by more than the rounding: no balanced form exists.
         """
-        from scipy.linalg import solve_continuous_lyapunov
-
         if len(self.B) <= order:
             return self
         if np.linalg.eigvals(self.A).real.max() >= -np.finfo(float).eps * np.abs(self.A).max():
             raise np.linalg.LinAlgError(Text("the compensator has a mode that does not decay"))
         outputs = np.stack([self.C, self.E])
-        reach = _root(solve_continuous_lyapunov(self.A, -np.outer(self.B, self.B)))
-        watch = _root(solve_continuous_lyapunov(self.A.T, -outputs.T @ outputs))
+        reach = _root(_gramian(self.A, np.outer(self.B, self.B)))
+        watch = _root(_gramian(self.A.T, outputs.T @ outputs))
         left, sizes, right = np.linalg.svd(watch.T @ reach)
         # A state that nothing reaches or watches has no size but rounding.
         order = min(order, int(np.count_nonzero(sizes > np.finfo(float).eps * sizes[0])))
         scale = 1.0 / np.sqrt(sizes[:order])
         into, out = reach @ right[:order].T * scale, (left[:, :order] * scale).T @ watch.T
         return Compensator(out @ self.A @ into, out @ self.B, self.C @ into, self.E @ into)
+
+
+def _gramian(A: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """Solution of A X + X A^T + Q = 0; a `LinAlgError` where rounding leaves none.
+
+    The steps of `scipy.linalg.solve_continuous_lyapunov`, which only warns of that, and a warning cannot be
+    caught for one thread.
+    """
+    from scipy.linalg import get_lapack_funcs, schur
+
+    form: Any = schur(A, output="real")
+    triangular, vectors = form
+    turned = vectors.T.dot((-Q).dot(vectors))
+    (solve,) = get_lapack_funcs(("trsyl",), (triangular, turned))
+    solution, scale, failed = solve(triangular, triangular, turned, tranb="T")
+    if failed:
+        raise np.linalg.LinAlgError(Text("the compensator has a mode that does not decay"))
+    return vectors.dot(scale * solution).dot(vectors.T)
 
 
 def _root(gramian: np.ndarray) -> np.ndarray:

@@ -322,11 +322,20 @@ def test_states_that_nothing_reaches_are_left_out():
         assert gain == pytest.approx(np.sum(reached / (p - decays)), rel=1e-9)
 
 
-def test_a_compensator_that_does_not_decay_is_refused() -> None:
-    """scipy warned of it, and a random network in a contract test died of the warning."""
-    law = Compensator(np.diag([-1.0, -2.0, -3.0, -4.0, 0.0]), np.ones(5), np.ones(5), np.ones(5))
+@pytest.mark.parametrize(
+    "A",
+    [
+        np.diag([-1.0, -2.0, -3.0, -4.0, 0.0]),
+        [[-1.0, 0.0, -0.02], [0.0, -100.0, 9e-13], [0.0, -4e12, -100.0]],
+    ],
+    ids=["a mode of zero", "only after rounding"],
+)
+def test_a_compensator_that_does_not_decay_is_refused(A: Any) -> None:
+    """scipy warned of both, and random networks in a contract test died of the warning."""
+    ones = np.ones(len(A))
+    law = Compensator(np.array(A), ones, ones, ones)
     with pytest.raises(np.linalg.LinAlgError, match="does not decay"):
-        law.reduced(4)
+        law.reduced(len(A) - 1)
 
 
 def test_the_page_shows_the_figures_that_it_takes_from_the_scenario() -> None:
