@@ -18,7 +18,11 @@ def few_rows(run: Run, most: int = MOST_ROWS) -> Run:
     last = len(run.t_s) - 1
     chosen = np.unique(np.append(np.arange(0, last + 1, step), last))
     methods = tuple(_few_rows(method, chosen) for method in run.methods)
-    return replace(run, methods=methods, t_s=run.t_s[chosen], truth=run.truth[chosen])
+    against = run.against
+    if against is not None:
+        recorded = None if against.recorded is None else _few_rows(against.recorded, chosen)
+        against = replace(against, recorded=recorded, to_log=against.to_log[chosen])
+    return replace(run, methods=methods, t_s=run.t_s[chosen], truth=run.truth[chosen], against=against)
 
 
 def _few_rows(method: MethodRun, chosen: np.ndarray) -> MethodRun:
@@ -29,4 +33,5 @@ def _few_rows(method: MethodRun, chosen: np.ndarray) -> MethodRun:
         rows=method.rows[mine],
         law_series=method.law_series[mine],
         navigation=None if method.navigation is None else method.navigation[mine],
+        output=None if method.output is None else method.output[mine],
     )

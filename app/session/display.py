@@ -34,6 +34,8 @@ CURVES: dict[str, tuple[str, ...]] = {
 }
 """Groups of error curves; the keys of `navcore.quantities.ERRORS` in each."""
 
+TO_LOG = ("ve_log", "vn_log")
+"""Velocity minus log, east and north: what the spectrum shows of a run on a ship's own INS beside errors."""
 _MOST_NAMES = 60
 
 
@@ -80,7 +82,7 @@ class Display(BaseModel):
         What the tab "Errors" shows: a group of `CURVES`, or keys of `navcore.quantities.ERRORS` with commas
         between them, as a lesson chooses.
     spectrum : str
-        Error whose spectrum is shown: a key of `navcore.quantities.ERRORS`.
+        Error whose spectrum is shown: a key of `navcore.quantities.ERRORS`, or of `TO_LOG`.
     baseline : int or None
         Pin with which numbers are compared; None: the first one.
     legend : tuple of (str, str)
@@ -158,7 +160,7 @@ class Display(BaseModel):
     scale: Literal["linear", "log"] = "linear"
     envelope: BandKind = "none"
     curves: Annotated[str, AfterValidator(_is_of_curves)] = "overview"
-    spectrum: Annotated[str, _one_of([error.key for error in ERRORS])] = "dve"
+    spectrum: Annotated[str, _one_of([*(error.key for error in ERRORS), *TO_LOG])] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
     legend: Annotated[
         tuple[tuple[Annotated[str, Field(max_length=300)], State], ...], Field(max_length=60)

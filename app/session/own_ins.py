@@ -30,7 +30,6 @@ JUDGED = {
 }
 """Quantities by which the best method is named, with their words and units; the first at once."""
 _METHODS: tuple[dict[str, Any], ...] = (
-    {"name": "free", "damping": "free"},
     {"name": "unity2", "damping": "external", "network": {"id": "unity2", "zeta": 0.5}},
     {"name": "complementary", "damping": "external", "network": {"id": "complementary"}},
     {
@@ -45,7 +44,7 @@ _METHODS: tuple[dict[str, Any], ...] = (
         "network": {"id": "compass", "sigma": 0.0025, "xi": 0.7},
     },
 )
-"""The INS as it ran, and four ways to damp it."""
+"""Four ways to damp an INS; as it ran it stands before them."""
 _OF_REFERENCE = re.compile(r"truth|gnss|gps|rtk|ppp|ref", re.IGNORECASE)
 _OF_INS = re.compile(r"ins(?!t)|imu|nav|phins|seapath|posmv", re.IGNORECASE)
 
@@ -109,7 +108,7 @@ def taken(uploads: Uploads) -> Taken:
 
 
 def own_scenario(uploads: Uploads, roles: Taken) -> tuple[Scenario, list[str]]:
-    """Make the scenario of the INS as it ran and four ways to damp it.
+    """Make the scenario of four ways to damp the INS.
 
     Parameters
     ----------

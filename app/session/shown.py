@@ -307,7 +307,13 @@ def window_of(run: Run, display: Display) -> Window:
 
 
 def _measured(run: Run, from_s: float, to_s: float) -> Run:
-    return replace(run, methods=tuple(_method(method, run.truth, from_s, to_s) for method in run.methods))
+    def cut(method: MethodRun) -> MethodRun:
+        return _method(method, run.truth, from_s, to_s)
+
+    against = run.against
+    if against is not None and against.recorded is not None:
+        against = replace(against, recorded=cut(against.recorded))
+    return replace(run, methods=tuple(map(cut, run.methods)), against=against)
 
 
 def _method(method: MethodRun, truth: np.ndarray, from_s: float, to_s: float) -> MethodRun:

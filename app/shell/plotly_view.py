@@ -82,7 +82,7 @@ class PlotlyView(PictureView[PlotlyFigure]):
         """
         figure = self._complete(found)
         if not self.frame.layout().alone:
-            style.without_legend(figure, [method.method.name for method in found.run.methods], self.width_px)
+            style.without_legend(figure, [method.method.name for method in found.run.lines], self.width_px)
         return self._carrying(figure, found)
 
     def _complete(self, found: Shown) -> PlotlyFigure:

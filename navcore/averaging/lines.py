@@ -24,8 +24,8 @@ class LineAmplitudes:
 
     Attributes
     ----------
-    amplitude : ndarray, shape (curves, 3)
-        Amplitude of each of `LINES`, in the curve's unit.
+    amplitude : ndarray, shape (curves, lines)
+        Amplitude of each line that was fitted, of `LINES`, in the curve's unit.
     offset, slope : ndarray, shape (curves,)
         Constant (at the first time) and trend (unit a second).
     residual_rms : ndarray, shape (curves,)
@@ -78,14 +78,14 @@ def line_amplitudes(time_s: np.ndarray, curves: np.ndarray, phases: np.ndarray) 
         Times, s.
     curves : ndarray, shape (m, curves)
         Say, the eight quantities of a method's rows.
-    phases : ndarray, shape (m, 3)
-        From `line_phases`.
+    phases : ndarray, shape (m, lines)
+        From `line_phases`, or some of its columns.
     """
     span = max(float(time_s[-1] - time_s[0]), 1e-9)
     ramp = (time_s - time_s[0]) / span
     design = np.column_stack([np.ones(len(time_s)), ramp, np.cos(phases), np.sin(phases)])
     solution, *_ = np.linalg.lstsq(design, curves, rcond=_RCOND)
-    count = len(LINES)
+    count = phases.shape[1]
     amplitude = np.hypot(solution[2 : 2 + count], solution[2 + count :]).T
     left = curves - design @ solution
     return LineAmplitudes(amplitude, solution[0], solution[1] / span, np.sqrt(np.mean(left**2, axis=0)))

@@ -13,6 +13,7 @@ from navcore.analysis.report import whole_system_report
 from navcore.engine.readings import settle_point, settled_s
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.spans import Span
+from navcore.engine.to_log import lines_to_log
 from navcore.engine.verdicts import Judgement, Verdict, together
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
@@ -104,7 +105,8 @@ def _against(run: Run) -> dict[str, Any]:
     """What the errors of a run on ``[ins]`` are, and which of them are not known; nothing of another run."""
     if run.against is None:
         return {}
-    return {"against": run.against.what, "not_known": list(run.against.not_known)}
+    told = {"against": run.against.what, "not_known": list(run.against.not_known)}
+    return told | {"velocity_minus_log": lines_to_log(run)}
 
 
 def judged(requirement: Requirement, run: MethodRun) -> tuple[float | None, bool]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
 from typing import Any, Literal
@@ -24,6 +24,8 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
 
 _DAMPED, _XI = 1, 2
+RECORDED_PLACE = -1
+"""Place of an INS as it was recorded, beside the methods of a scenario."""
 Status = Literal["ok", "diverged", "stopped"]
 ENDINGS: dict[Status, str] = {"diverged": Text("diverged"), "stopped": Text("stopped")}
 """How a method ended that did not reach the end, in words."""
@@ -168,12 +170,15 @@ class Against:
         Errors of which the reference says nothing.
     recorded : MethodRun or None
         The INS as it was recorded, against the reference.
+    to_log : ndarray, shape (m, 2)
+        Velocity as recorded minus log at the output rows, E and N, m/s; NaN where the log is silent.
     """
 
     what: Literal["truth", "recorded"]
     epochs: int = 0
     not_known: tuple[str, ...] = ()
     recorded: MethodRun | None = None
+    to_log: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
 
 
 def in_places(methods: Iterable[MethodRun], places: Iterable[int] | None = None) -> tuple[MethodRun, ...]:
@@ -233,6 +238,12 @@ class Run:
         """All that tables and files show: an INS as it was recorded stands before the methods."""
         recorded = None if self.against is None else self.against.recorded
         return self.methods if recorded is None else (recorded, *self.methods)
+
+    @property
+    def with_recorded(self) -> Run:
+        """The same run, an INS as it was recorded among its methods, as tables and curves show it."""
+        lines = self.lines
+        return self if len(lines) == len(self.methods) else replace(self, methods=lines)
 
     @property
     def computed_on(self) -> str:

@@ -102,12 +102,34 @@ class Ran(Answer):
                 for one in run.lines
             )
             yield Table(heads, tuple(rows))
+        yield from self._to_log()
         yield from self._verdicts()
         warnings: list[str] = [Text("warning: {text}", text=text) for text in run.warnings]
         for one in run.lines:
             name = one.method.name
             warnings += (Text("warning: {name}: {text}", name=name, text=text) for text in one.warnings)
         yield from ("", *warnings) if warnings else ()
+
+    def _to_log(self) -> Iterator[Table | str]:
+        """Give the natural lines in velocity minus log, before and after; nothing without ``[ins]``."""
+        from navcore.engine.to_log import lines_to_log
+
+        if self.run.against is None:
+            return
+        heads = (
+            Column(Text("velocity minus log")),
+            *(
+                Column(Text("{axis}: {line}", axis=axis, line=line), "m/s")
+                for axis in (Text("east"), Text("north"))
+                for line in (Text("84 min"), Text("24 h"), "RMS")
+            ),
+        )
+        keys = "schuler_mps", "earth_mps", "rms_mps"
+        rows = (
+            (name, *(of_axis[key] for of_axis in axes.values() for key in keys))
+            for name, axes in lines_to_log(self.run).items()
+        )
+        yield Table(heads, tuple(rows))
 
     def _verdicts(self) -> Iterator[Table | str]:
         """Give a row for each method and limit, and what the run draws as 0; nothing without limits."""

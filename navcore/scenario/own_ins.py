@@ -10,7 +10,7 @@ from navcore.io.column_map import map_field
 from navcore.motion.ins_track import InsTrack
 from navcore.scenario.method import Method
 
-AS_RECORDED = "as recorded"
+AS_RECORDED = Text("as recorded")
 """Name of the INS's own output among the methods of a run."""
 REPLACED = ("motion", "imu", "initial_error")
 """Blocks whose place ``[ins]`` takes."""

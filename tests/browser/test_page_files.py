@@ -103,7 +103,7 @@ def test_my_ships_ins_is_damped_by_one_button(
     fresh.page.locator(".sb-note").filter(has_text=words).wait_for()
     fresh.page.screenshot(path=pictures / "own-ins.png")
     assert session.run is not None
-    assert [one.method.name for one in session.run.lines][:2] == ["as recorded", "free"]
+    assert [one.method.name for one in session.run.lines][:2] == ["as recorded", "unity2"]
     fresh.choose("best by", "largest heading error")
     fresh.page.locator(".sb-note").filter(has_text="largest heading error").wait_for()
 

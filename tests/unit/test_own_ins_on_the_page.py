@@ -49,9 +49,9 @@ def test_one_button_gives_curves_and_a_sentence(contents: dict[str, bytes], tmp_
     uploads = uploaded(tmp_path, contents, ins="ins.csv", log="log.csv", truth="gnss.csv")
     scenario, notes = own_scenario(uploads, taken(uploads))
     assert "6.0 h" in notes[0] and scenario.site.lat_deg == pytest.approx(54.0, abs=0.01)
-    assert len(scenario.method) == 5 and scenario.run.duration_h == pytest.approx(6.0, abs=0.001)
+    assert len(scenario.method) == 4 and scenario.run.duration_h == pytest.approx(6.0, abs=0.001)
     run = simulate(scenario)
-    assert [one.status for one in run.lines] == ["ok"] * 6
+    assert [one.status for one in run.lines] == ["ok"] * 5
     said = sentence(run, "position_max_m")
     assert said.startswith("With compass the largest position error would have been") and "% less" in said
     assert all(sentence(run, key) for key in JUDGED)

@@ -288,7 +288,8 @@ def _metrics(session: Session) -> str:
     run, display = session.now.run, session.now.display
     window = window_of(run, display)
     note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
-    tables = _tables(len(run.methods), lambda part: metrics_html(window.run, part, display=display))
+    whole = window.run.with_recorded
+    tables = _tables(len(whole.methods), lambda part: metrics_html(whole, part, display=display))
     system = system_html(run, folded=False)
     return section(Text("Metrics"), note, tables, Text('<div class="table">{system}</div>', system=system))
 

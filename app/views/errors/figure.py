@@ -159,7 +159,7 @@ def error_plots(
             period=period,
         )
         if envelope is not None and len(envelope.t_s):
-            plot = _with_band(plot, envelope, column, time_s, len(run.methods))
+            plot = _with_band(plot, envelope, column, time_s, run)
         if limits and key in limits:
             plot = _with_limit(plot, limits[key])
         plots[key] = _logarithmic(plot) if display.scale == "log" else plot
@@ -171,7 +171,7 @@ def _lines(
 ) -> list[_Line]:
     none = np.empty(0)
     lines = []
-    for method in run.methods:
+    for method in run.lines:
         state = display.state_of(method.method.name)
         values = np.full((len(time_s), len(NAMES)), np.nan)
         values[: len(method.plot.values)] = method.plot.values
@@ -194,11 +194,13 @@ def _lines(
 
 
 def _with_band(
-    plot: UplotFigure, envelope: Envelope, column: int, time_s: np.ndarray, count: int
+    plot: UplotFigure, envelope: Envelope, column: int, time_s: np.ndarray, run: Run
 ) -> UplotFigure:
     """Put the envelope's edges behind all curves, and a band between each pair."""
     curves, bands = list(plot.curves), []
-    for index, (low, high) in enumerate(zip(envelope.low[:count], envelope.high[:count], strict=True)):
+    count, first = len(run.methods), len(run.lines) - len(run.methods)
+    edges = zip(envelope.low[:count], envelope.high[:count], strict=True)
+    for index, (low, high) in enumerate(edges, start=first):
         if low is None or high is None or curves[index].state == "hidden":
             continue
         bands.append((len(curves), len(curves) + 1, curves[index].color + _BAND))

@@ -56,7 +56,7 @@ def legend_html(
             f"height:3px;background:{style.method_color(method.place)}",
             state_of(method.method.name),
         )
-        for method in run.methods
+        for method in run.lines
         if methods
     ]
     if overlay is not None:

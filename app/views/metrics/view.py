@@ -254,10 +254,12 @@ class MetricsView(PictureView[tuple[str, str]]):
     def _table_html(self, now: Shown) -> str:
         """Metrics of all methods, in as many tables below each other as the width asks for."""
         window = window_of(now.run, now.display)
-        layout, run, verified, baseline = self.frame.layout(), window.run, now.verified, now.baseline
+        layout, run = self.frame.layout(), window.run.with_recorded
+        verified, baseline = now.verified, now.baseline
         if baseline is not None and baseline.run is not None:
             baseline = replace(baseline, run=window.of(baseline.run))
-        edited = None if now.baseline is None else (now.selected, now.baseline.method)
+        first = len(run.methods) - len(window.run.methods)
+        edited = None if now.baseline is None else (first + now.selected, now.baseline.method)
         each_px = method_px(metrics_rows(run, now.display), _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
         each_px += 0 if baseline is None else _DELTA_PX[layout.wide]
         most = max(int((layout.text_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)

@@ -10,10 +10,11 @@ from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import if_user
 from schuler_bench.views.errors.figure import TITLES
-from schuler_bench.views.spectrum.figure import spectrum
+from schuler_bench.views.spectrum.figure import FIRST, TO_LOG_TITLES, drawn_key, spectrum
 
 SPECTRUM_OF = Text("spectrum of")
-_KEYS = {title: key for key, title in TITLES.items()}
+_KEYS = {title: key for key, title in (TITLES | TO_LOG_TITLES).items()}
+_WORDS = {key: title for title, key in _KEYS.items()}
 
 
 class SpectrumView(PlotlyView):
@@ -29,14 +30,29 @@ class SpectrumView(PlotlyView):
         """Make the chooser."""
         self.frame.gui.add_html(TOOLS)
         self._chooser: Any = self.frame.gui.add_dropdown(
-            SPECTRUM_OF, tuple(_KEYS), initial_value=TITLES[self.session.display.spectrum],
+            SPECTRUM_OF, tuple(TITLES.values()), initial_value=TITLES[FIRST],
             hint=Text("Amplitude over period: a sine shows as a peak of its amplitude."),
         )  # fmt: skip
-        self._chooser.on_update(if_user(lambda: self.frame.show(spectrum=_KEYS[self._chooser.value])))
+        self._chooser.on_update(if_user(self._choose))
+        self.follow_display()
+
+    def _choose(self) -> None:
+        if self._chooser.value in _KEYS:
+            self.frame.show(spectrum=_KEYS[self._chooser.value])
 
     def follow_display(self) -> None:
-        """Show the display's quantity."""
-        self._chooser.value = TITLES[self.session.display.spectrum]
+        """Show the display's quantity, and those of a ship's own INS where the run is on one."""
+        run, key = self.session.run, self.session.display.spectrum
+        own = tuple(TO_LOG_TITLES.values()) if run is not None and run.against is not None else ()
+        options = (*TITLES.values(), *own)
+        if tuple(self._chooser.options) != options:
+            self._chooser.options = options
+        self._chooser.value = _WORDS[drawn_key(run, key)]
+
+    def draw(self, found: Shown) -> None:
+        """Offer what the run has, and mark the picture as out of date."""
+        self.follow_display()
+        super().draw(found)
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Spectra."""

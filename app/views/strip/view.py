@@ -10,6 +10,7 @@ from navcore.engine.run import ENDINGS, MethodRun, Run
 from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, components
+from navcore.scenario.own_ins import AS_RECORDED
 from navcore.scenario.stochastic import drawn_as_zero
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import COMMAND, hint, word
@@ -83,6 +84,9 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
     run, display = found.run, found.display
     part = window_of(run, display).run
     limits = asked(run, run.scenario.requirement)
+    recorded = None if part.against is None else part.against.recorded
+    if recorded is not None:
+        yield _recorded_card(recorded, display)
     for place, method in enumerate(part.methods):
         name, state = method.method.name, display.state_of(method.method.name)
         facts = [*_numbers(method, _before(found, name), display)]
@@ -108,6 +112,26 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
             said=said,
             facts=Text.joined("", facts),
         )
+
+
+def _recorded_card(method: MethodRun, display: Display) -> str:
+    """Card of an INS as it was recorded: there is nothing of it to edit."""
+    state = display.state_of(method.method.name)
+    said = Text("<i>{words}</i>", words=word(state)) if word(state) else ""
+    return Text(
+        '<div class="sb-result" data-state="{state}" data-edited="false" style="--color:{color}">'
+        '<button class="sb-tint" data-command="{legend} {name:html}" title="{hint}" '
+        'aria-label="{shown:html}: {hint}"></button>'
+        '<span class="sb-edit" data-sb-drops><b>{shown:html}</b>{said}{facts}</span></div>',
+        state=state,
+        color=style.method_color(method.place),
+        legend=COMMAND,
+        name=method.method.name,
+        shown=AS_RECORDED,
+        hint=hint(state),
+        said=said,
+        facts=Text.joined("", _numbers(method, None, display)),
+    )
 
 
 def known(method: MethodRun, key: str) -> bool:

@@ -19,7 +19,8 @@ from navcore.engine.drivers.linear import run_methods
 from navcore.engine.environment import Environment, environment, start_utc
 from navcore.engine.ins_checks import already_damped, require_units
 from navcore.engine.reference_errors import RecordedErrors, recorded_errors_of
-from navcore.engine.run import Against, MethodRun, Run
+from navcore.engine.run import RECORDED_PLACE, Against, MethodRun, Run
+from navcore.engine.to_log import recorded_to_log
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
@@ -101,7 +102,8 @@ def run_outside(
     state = np.zeros(7)
     found = run_methods(placed, replace(env, rows=rows), state, progress, cancelled, began)
     methods = tuple(_with_output(method, env, run.step_s, placed) for method in found.methods)
-    against = Against("recorded")
+    difference = recorded_to_log(env.reference, output * run.step_s)
+    against = Against("recorded", to_log=difference)
     warnings = [*found.warnings]
     if recorded is not None:
         output_s, watched = output * run.step_s, [(one.begins_s, one.bound_m) for one in placed.requirement]
@@ -110,7 +112,7 @@ def run_outside(
         first, *methods = (
             against_reference(one, recorded, output_s, truth, watched) for one in (first, *methods)
         )
-        against = Against("truth", len(recorded.time_s), recorded.not_known, first)
+        against = Against("truth", len(recorded.time_s), recorded.not_known, first, difference)
     return replace(
         found,
         scenario=scenario,
@@ -182,7 +184,7 @@ def _as_recorded(scenario: Scenario, env: Environment, rows: np.ndarray, own: np
         "",
         env.steps * step_s,
     )
-    return as_recorded(result, None if own is None else own[rows, 5:])
+    return replace(as_recorded(result, None if own is None else own[rows, 5:]), place=RECORDED_PLACE)
 
 
 def _with_output(method: MethodRun, env: Environment, step_s: float, scenario: Scenario) -> MethodRun:
