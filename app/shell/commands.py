@@ -169,8 +169,9 @@ class Commands:
             "tab": bring the tab of that name to the front; "link": show a link to another session; "keys":
             list the keys; "upload": let the user choose a file; "front": bring the tabs of these names,
             parted by "|", to the front without giving them the focus; "front-again": the same, but for
-            what the user has chosen since the page last told of its tabs; "copy": put the text on the
-            clipboard; "paste": ask for a text (static/paste.js). A view's script may add more
+            what the user has chosen since the page last told of its tabs; "copy", "copy-latex",
+            "copy-plain": put a text on the clipboard that is TOML, LaTeX, plain; "paste": ask for a text
+            (static/paste.js). A view's script may add more
             (``schuler.act``).
         text : str
             What it is about.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -94,6 +96,48 @@ class Exported(Answer):
         rows = [(name, len(_bytes(one)) / 1000.0) for name, one in self.files.items()]
         yield Table(heads, tuple(rows))
         yield from (Text("warning: {text}", text=text) for text in self.warnings)
+
+    def packed(self) -> Packed:
+        """Return the files as one archive, without the vectors that they were made from."""
+        stream = io.BytesIO()
+        with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, content in self.files.items():
+                archive.writestr(zipfile.ZipInfo(name, _NO_DATE), _bytes(content), zipfile.ZIP_DEFLATED)
+        return Packed(f"{self.prefix}.zip", stream.getvalue(), self.document(), tuple(self.rows()))
+
+
+@dataclass(frozen=True)
+class Packed(Answer):
+    """The files of an export as one ZIP archive.
+
+    Attributes
+    ----------
+    name : str
+        Of the archive.
+    archive : bytes
+        Its content: the files of `Exported`, in no folder.
+    found : dict
+        What ``--json`` prints of the export.
+    said : tuple of (Table or str)
+        What is told of it.
+    """
+
+    name: str
+    archive: bytes
+    found: dict[str, Any]
+    said: tuple[Table | str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        return self.found
+
+    def rows(self) -> Iterator[Table | str]:
+        """Give what was exported, the files, and the warnings."""
+        yield from self.said
+
+
+_NO_DATE = (1980, 1, 1, 0, 0, 0)
+"""Of a file in an archive: the same export gives the same bytes."""
 
 
 def _bytes(content: str | bytes) -> bytes:

@@ -11,7 +11,7 @@ from navcore.foundation.text import Text
 from navcore.questions.base import Cancelled, Progress, Question, Writes, option, unless_stopped
 
 if TYPE_CHECKING:
-    from navcore.exporting.exported import Exported
+    from navcore.exporting.exported import Exported, Packed
 
 
 class ExportQuestion(Question):
@@ -67,8 +67,11 @@ class ExportQuestion(Question):
         metavar="PREFIX",
         help=Text("Begins the names of files, functions and types."),
     )
+    as_archive: bool = option(False, hidden=True)
 
-    def answer(self, progress: Progress | None = None, cancelled: Cancelled | None = None) -> "Exported":
+    def answer(
+        self, progress: Progress | None = None, cancelled: Cancelled | None = None
+    ) -> "Exported | Packed":
         """Read the law, and replay the scenario."""
         from navcore.exporting.exported import exported
 
@@ -82,7 +85,7 @@ class ExportQuestion(Question):
             prefix=self.name,
         )
         unless_stopped(cancelled)
-        return found
+        return found.packed() if self.as_archive else found
 
     def require_free(self, out: Path, reads: Iterable[PathLike] = (), *, force: bool = False) -> None:
         """Refuse a folder in which there is something already: files of two exports must not mix."""

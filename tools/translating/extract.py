@@ -118,6 +118,8 @@ def _fields() -> Iterator[Text]:
     for kind in _models(Parameters):
         for name, info in kind.model_fields.items():
             extra, where = extra_of(info), f"{kind.__module__}:{kind.__name__}"
+            if extra.get("hidden"):  # no control, see navcore.questions.base.option
+                continue
             for label in (form.plain_label(name, info), *extra.get("elements", ())):
                 if re.search("[a-z]{3,}", label) and label not in _SYMBOLS:
                     yield Text(label, where, prose=re.search("[a-z]{4,}", label) is not None)

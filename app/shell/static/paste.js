@@ -1,4 +1,5 @@
-// Parts of the scenario by the clipboard, as TOML: a method, the log's events (app/shell/palette.py). What is copied stands
+// Parts of the scenario by the clipboard, as TOML: a method, the log's events (app/shell/palette.py); the equations of a method
+// as LaTeX and as text (app/views/method/taking.py). What is copied stands
 // in a dialog, from which it can be copied again: a page that came over http may not write to the clipboard by itself.
 // Ctrl+V takes such a text anywhere but in a text box.
 (() => {
@@ -18,8 +19,8 @@
     return made;
   }
 
-  function copied(text) {
-    const shown = area(text, "TOML", { readonly: "" });
+  function copied(text, title, kind, told) {
+    const shown = area(text, kind, { readonly: "" });
     const again = element("button", "Copy", { class: "sb-do" });
     const done = element("span", "", { role: "status" });
     async function write() {
@@ -28,8 +29,7 @@
       done.textContent = " Copied.";
     }
     again.addEventListener("click", write);
-    const told = "Paste it into the page of another session with Ctrl+V, or into a scenario file.";
-    dialog("Copied as TOML", element("p", told), shown, row(again, done));
+    dialog(title, ...(told ? [element("p", told)] : []), shown, row(again, done));
     // A browser that asks for a click first gets it from the button.
     write().catch(() => (done.textContent = ""));
   }
@@ -52,7 +52,10 @@
     box.focus();
   }
 
-  act("copy", copied);
+  const elsewhere = "Paste it into the page of another session with Ctrl+V, or into a scenario file.";
+  act("copy", (text) => copied(text, "Copied as TOML", "TOML", elsewhere));
+  act("copy-latex", (text) => copied(text, "Copied as LaTeX", "LaTeX"));
+  act("copy-plain", (text) => copied(text, "Copied as text", "equations"));
   act("paste", ask);
 
   addEventListener("paste", (event) => {

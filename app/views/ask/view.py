@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from navcore.engine.run import Run
-from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.questions import QUESTIONS
 from navcore.questions.base import Question
-from schuler_bench.editing import form
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell import notices
-from schuler_bench.shell.control import Control, Section
 from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.question_form import QuestionForm
 from schuler_bench.shell.searching import SearchControls, reveal, show_html
 from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
 
@@ -116,8 +113,7 @@ class _Panel:
         self._frame, self._session, self._question = frame, frame.session, question
         self._id: str = question.model_fields["id"].default
         self._asker = frame.session.searches.asking[self._id]
-        self._specs = form.fields(question, (self._id,))
-        self._section = Section(gui, tab, self._edit, order)
+        self._form = QuestionForm(frame, tab, question, order)
         with tab:
             self._controls = SearchControls(
                 gui, self._asker, self.begin, (ASK, STOP), question.help, order=order + _SPACE - 8.0
@@ -131,9 +127,7 @@ class _Panel:
 
     def show(self, *, chosen: bool) -> None:
         """Show the form, and how far the question is; nothing where another one is chosen."""
-        given = self._given()
-        values = {spec.path: given.get(str(spec.path[-1]), spec.default) for spec in self._specs}
-        self._section.show(self._specs if chosen else [], values, None)
+        self._form.show(chosen)
         self._controls.follow(chosen)
         asked = self._asker.asked
         old = asked is not None and asked.load != self._session.scenario
@@ -159,33 +153,8 @@ class _Panel:
         """Ask the question."""
         with notices.told(self._frame.client, self._question.title, self._frame.refresh):
             with self._session.lock:
-                asked = self._question.ask({"scenario": self._session.scenario, **self._given()})
+                asked = self._question.ask({"scenario": self._session.scenario, **self._form.given()})
             self._asker.begin(asked)
-
-    def _given(self) -> dict[str, Any]:
-        """Values of fields that a page has set."""
-        before = f"{self._id}."
-        return {
-            key.removeprefix(before): json.loads(text)
-            for key, text in self._session.display.given
-            if key.startswith(before)
-        }
-
-    def _edit(self, control: Control, by_slider: bool) -> None:
-        name, entered = str(control.spec.path[-1]), control.take(by_slider)
-        try:
-            value = control.read(entered)
-            value = int(value) if control.spec.kind == "integer" else value
-            self._question.ask({"scenario": self._session.scenario, **self._given(), name: value})
-        except (InputError, ValueError) as error:
-            lines = [str(fault) for fault in error.faults] if isinstance(error, InputError) else [str(error)]
-            control.refuse(lines)
-            return
-        control.say("")
-        control.follow(value)
-        key = f"{self._id}.{name}"
-        others = tuple(pair for pair in self._session.display.given if pair[0] != key)
-        self._frame.show(given=(*others, (key, json.dumps(value))))
 
 
 VIEW = AskView

@@ -10,6 +10,7 @@ from navcore.damping.base import Damping
 from navcore.damping.gyrocompass import Gyrocompass
 from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
+from navcore.exporting.equations import as_latex, as_text
 from navcore.foundation.text import Text
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
@@ -28,6 +29,7 @@ from schuler_bench.shell.control import Control, Section, controls_of
 from schuler_bench.shell.searching import show_html
 from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.method.chips import ADD, COPY, EYE, REMOVE, RENAME, SELECT, chips_html
+from schuler_bench.views.method.taking import COPY_LATEX, COPY_TEXT, TakingPanel
 from schuler_bench.views.method.tuning import TuningPanel
 
 _TAKEN = Text("from the sensors and the log of the scenario")
@@ -45,7 +47,7 @@ class MethodView(View):
 
     title = Text("Method")
     place = "edit"
-    asks = ("adapt",)
+    asks = ("adapt", "export")
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
@@ -56,6 +58,10 @@ class MethodView(View):
         add(RENAME, lambda name: self._arrange(RENAME, name))
         add(SELECT, self._with_method(lambda at: self.session.select(at, None)))
         add(EYE, self._with_method(self._look))
+        ask = frame.commands.ask_page
+        latex, text = Text("Copy the equations as LaTeX"), Text("Copy the equations as text")
+        add(COPY_LATEX, lambda _: ask("copy-latex", self._taking.copied(as_latex)), latex, watcher=True)
+        add(COPY_TEXT, lambda _: ask("copy-plain", self._taking.copied(as_text)), text, watcher=True)
 
     def build(self, tab: Tab) -> None:
         """Make the chips, and the places for controls and notes."""
@@ -77,6 +83,7 @@ class MethodView(View):
         }
         self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
         self._tuning = TuningPanel(self.frame, tab, order=95.0)
+        self._taking = TakingPanel(self.frame, tab, order=150.0)
 
     @property
     def leads(self) -> int:
@@ -122,8 +129,9 @@ class MethodView(View):
         self._show_warnings(self.session.run, scenario, index)
 
     def follow_display(self) -> None:
-        """Show whose curves are hidden, and in the normal size what arranges the methods."""
+        """Show whose curves are hidden, what arranges the methods, and what was entered for an export."""
         self._show_chips()
+        self._taking.follow()
 
     def _show_chips(self) -> None:
         display = self.session.display
@@ -134,12 +142,14 @@ class MethodView(View):
         )
 
     def follow_jobs(self) -> None:
-        """Show how far the search for a damping table is."""
+        """Show how far the search for a damping table is, and how far an export."""
         self._tuning.show()
+        self._taking.follow()
 
     def draw(self, found: Shown) -> None:
-        """Show the warnings about the selected method."""
+        """Show the warnings about the selected method, and its equations."""
         del found
+        self._taking.show_equations()
         self._show_warnings(self.session.run, self.session.scenario, self.session.selected)
 
     def _show(self, scenario: Scenario, index: int, moved: Control | None) -> None:
