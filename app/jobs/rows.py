@@ -34,4 +34,5 @@ def _few_rows(method: MethodRun, chosen: np.ndarray) -> MethodRun:
         law_series=method.law_series[mine],
         navigation=None if method.navigation is None else method.navigation[mine],
         output=None if method.output is None else method.output[mine],
+        moved=None if method.moved is None else method.moved[mine],
     )

@@ -156,6 +156,19 @@ def own_scenario(uploads: Uploads, roles: Taken) -> tuple[Scenario, list[str]]:
     return Scenario.parse(data), [told]
 
 
+def best(run: Run, key: str) -> MethodRun | None:
+    """Best damped method of a run on ``[ins]`` by a quantity; without a reference what moves the output most.
+
+    None where there is no damped method.
+    """
+    damped = [one for one in run.methods if one.status == "ok" and one.method.kind.uses_network]
+    if run.against is None or not damped:
+        return None
+    if run.against.recorded is None:
+        return max(damped, key=_moved_m)
+    return min(damped, key=lambda one: measure(one, key))
+
+
 def sentence(run: Run, key: str) -> str:
     """Say in one sentence what damping would have changed.
 
@@ -166,12 +179,10 @@ def sentence(run: Run, key: str) -> str:
     key : str
         One of `JUDGED`: by what the best method is chosen.
     """
-    against = run.against
-    damped = [one for one in run.methods if one.status == "ok" and one.method.kind.uses_network]
-    if against is None or not damped:
+    against, most = run.against, best(run, key)
+    if against is None or most is None:
         return ""
     if against.recorded is None:
-        most = max(damped, key=_moved_m)
         return Text(
             "No reference was given: {method} would have moved the position by up to {moved:.0f} m. A GNSS "
             "file would tell whether nearer to the truth.",
@@ -180,8 +191,7 @@ def sentence(run: Run, key: str) -> str:
         )
     unit = limit_unit(key)
     before = measure(against.recorded, key) / unit
-    best = min(damped, key=lambda one: measure(one, key))
-    value = measure(best, key) / unit
+    value = measure(most, key) / unit
     quantity, shown = JUDGED[key]
     if not math.isfinite(before) or not math.isfinite(value):
         return Text("The reference does not tell the {quantity}: choose another.", quantity=quantity)
@@ -192,13 +202,13 @@ def sentence(run: Run, key: str) -> str:
             quantity=quantity,
             before=number(before, 3),
             unit=shown,
-            method=best.method.name,
+            method=most.method.name,
             value=number(value, 3),
         )
     return Text(
         "With {method} the {quantity} would have been {value} {unit} in place of {before} {unit}: "
         "{share:.0f} % less.",
-        method=best.method.name,
+        method=most.method.name,
         quantity=quantity,
         value=number(value, 3),
         unit=shown,

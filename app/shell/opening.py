@@ -23,6 +23,8 @@ from schuler_bench.shell import notices
 if TYPE_CHECKING:
     import viser
 
+    from navcore.engine.run import MethodRun, Run
+
 UPLOADED = "uploaded"
 """Stands for the uploaded recordings in the scenario chooser, and for the uploaded study in its own."""
 SCENARIO, METRICS = "scenario.toml", "metrics.json"
@@ -203,6 +205,16 @@ class Opening:
             return
         self._client.send_file_download(name, content, save_immediately=True)
         self._client.flush()
+
+    def give_damped(self, run: Run, method: MethodRun) -> None:
+        """Let the browser save the files of an INS as a method would have damped it."""
+        from navcore.engine.damped_recording import damped_files
+
+        client = self._client
+        with notices.told(client, Text("The damped output cannot be written"), lambda: None):
+            for name, text in damped_files(run, method).items():
+                client.send_file_download(f"damped-{name}", text.encode(), save_immediately=True)
+            client.flush()
 
     def give_aside(self, number: int) -> None:
         """Let the browser save what was kept and cannot be read, as it is."""

@@ -65,6 +65,7 @@ def against_reference(
         rows=rows,
         law_series=run.law_series[at],
         output=None if run.output is None else run.output[at],
+        moved=None if run.moved is None else run.moved[at],
         errors=_statistics(errors),
         plot=_plot(epochs, errors),
         spans=_spans(epochs, errors, truth[: len(epochs)], watched),

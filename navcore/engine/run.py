@@ -110,6 +110,8 @@ class MethodRun:
         The whole run, and from each ``from_h`` of the scenario's requirements on; in order.
     output : ndarray, shape (m, 5), or None
         Of a run on ``[ins]``: the damped output at the output rows, `navcore.engine.against.OUTPUT`.
+    moved : ndarray, shape (m, 7), or None
+        With it: damped minus recorded, the first seven of `navcore.quantities.NAMES`.
     place : int
         By which pictures know the method, and from which its colour follows (`in_places`).
     """
@@ -132,6 +134,7 @@ class MethodRun:
     heading_settling_s: float = math.inf
     spans: tuple[Span, ...] = ()
     output: np.ndarray | None = None
+    moved: np.ndarray | None = None
     place: int = 0
 
     def __repr__(self) -> str:

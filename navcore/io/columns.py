@@ -180,6 +180,15 @@ def column_warnings(names: Sequence[str], known: Mapping[str, Column]) -> list[s
     return words
 
 
+def understood(table: Table) -> Table:
+    """Check the numbers and times of a table, and tell radians from degrees; raises as `table_recording`."""
+    table = of_one_clock(_without_placeholders(table))
+    faults = _range_faults(table) or order_faults(table) or rate_faults(table)
+    if faults:
+        raise InputError(faults)
+    return with_radians(table)
+
+
 def table_recording(table: Table) -> Recording:
     """Check the numbers of a table and sort them into quantities; an empty cell is a missing sample.
 
@@ -188,12 +197,7 @@ def table_recording(table: Table) -> Recording:
     InputError
         A value is not finite or out of range; time is unordered or repeated; every cell of a table is empty.
     """
-    table = of_one_clock(_without_placeholders(table))
-    faults = _range_faults(table) or order_faults(table) or rate_faults(table)
-    if faults:
-        raise InputError(faults)
-
-    table = with_radians(table)
+    table = understood(table)
 
     def series(what: str, *stems: str, optional: int = 0) -> Series | None:
         """Series of columns; the last ``optional`` ones may be absent (0 then)."""

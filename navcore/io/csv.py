@@ -44,7 +44,7 @@ from navcore.io.known_files import DATAFLASH
 from navcore.io.mapped_rows import mapped_layout, skip_bad
 from navcore.io.rows import Rows, split_line
 from navcore.io.series import LeftOut, Recording
-from navcore.io.source import read_text
+from navcore.io.source import FileText, read_text
 from navcore.io.table_flags import flag_columns, heed
 from navcore.io.table_layout import COMMENTS, head_of_text, holds_number, is_row, is_units, layout_of
 from navcore.io.table_times import Table
@@ -75,6 +75,16 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
         Missing columns (names those found), rows of another length, cells that are no finite number in range,
         time out of order, or more cells than are read.
     """
+    content, rows, table = laid_out(path, column_map)
+    others = ["" if index in rows.heeded else name for index, name in enumerate(rows.header)]
+    unused = column_warnings(others, rows.columns)
+    told = dialect_words(rows.header) if column_map is None else []
+    warnings = (*content.warnings(), *told, *rows.warnings, *unused, *table.warnings)
+    return table_recording(replace(table, warnings=warnings))
+
+
+def laid_out(path: Path, column_map: ColumnMap | None = None) -> tuple[FileText, Rows, Table]:
+    """Text of a table, its rows as they are written, and its numbers; raises as `read` does."""
     content = read_text(path)
     rows = _rows(path.name, content.text, column_map)
     if column_map is not None and column_map.skip_bad_rows:
@@ -82,11 +92,7 @@ def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
     if not rows.numbers:
         raise InputError(Fault(path.name, "", None, Text("a header but no rows")))
     table = _table(path.name, rows, column_map, lambda: _row_ids(path.name, content.text, rows))
-    others = ["" if index in rows.heeded else name for index, name in enumerate(rows.header)]
-    unused = column_warnings(others, rows.columns)
-    told = dialect_words(rows.header) if column_map is None else []
-    warnings = (*content.warnings(), *told, *rows.warnings, *unused, *table.warnings)
-    return table_recording(replace(table, warnings=warnings))
+    return content, rows, table
 
 
 def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:

@@ -49,12 +49,15 @@ class NmeaLog:
         Lines that were left out for what they hold.
     warnings : tuple of str
         What was left out or looks odd.
+    text : str
+        Of the file.
     """
 
     ordered: Ordered
     tally: Tally
     damaged_lines: int
     warnings: tuple[str, ...]
+    text: str = ""
 
 
 def read_nmea(path: Path) -> NmeaLog:
@@ -74,7 +77,9 @@ def read_nmea(path: Path) -> NmeaLog:
     ordered = gathered.in_order()
     tally.lines += content.damaged_lines
     _refuse_unusable(path, tally, content.text)
-    return NmeaLog(ordered, tally, content.damaged_lines, (*content.warnings(), *_warnings(tally)))
+    return NmeaLog(
+        ordered, tally, content.damaged_lines, (*content.warnings(), *_warnings(tally)), content.text
+    )
 
 
 def _refuse_unusable(path: Path, tally: Tally, text: str) -> None:

@@ -67,6 +67,8 @@ class Ordered(NamedTuple):
         Of each sentence: places among the names.
     names : list of str
         Of the kinds.
+    lines, time_s : ndarray, shape (n,)
+        Line and time (s, NaN without) of each sentence.
     """
 
     readings: dict[Channel, Quantities]
@@ -74,6 +76,8 @@ class Ordered(NamedTuple):
     fates: np.ndarray
     kinds: np.ndarray
     names: list[str]
+    lines: np.ndarray
+    time_s: np.ndarray
 
 
 class Gathered:
@@ -162,7 +166,7 @@ class Gathered:
                 if begin < end:
                     part = row[begin:end]
                     readings[name][quantity] = Held(rows["time_s"][part], values[begin:end], part)
-        return Ordered(readings, times, fates, rows["kind"], list(self._kinds))
+        return Ordered(readings, times, fates, rows["kind"], list(self._kinds), rows["line"], rows["time_s"])
 
     def _tell_absent(self, rows: np.ndarray) -> None:
         """Drop the speeds that a kind of sentence never gives; an empty one of another kind is invalid.

@@ -26,6 +26,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.verify:VerifyQuestion",
     "navcore.questions.correction:CorrectionQuestion",
     "navcore.questions.why:WhyQuestion",
+    "navcore.questions.damp:DampQuestion",
     "navcore.questions.export:ExportQuestion",
 )
 """Questions by name, in the order in which the command and the page offer them."""

@@ -7,7 +7,7 @@ from typing import Any
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from schuler_bench.plots.table import cell, row, table
-from schuler_bench.session.own_ins import JUDGED, Taken, described, sentence, taken
+from schuler_bench.session.own_ins import JUDGED, Taken, best, described, sentence, taken
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, if_user
 
@@ -16,6 +16,8 @@ _TOLD = Text(
     "Upload the output of the ship's INS, its speed log and, if there is one, a GNSS track: damping is laid "
     "on the output from outside. No gyro data is needed."
 )
+_GIVE = Text("Download the damped output")
+_GIVE_HINT = Text("The INS's own files, with what the method of the sentence above would have given out.")
 _EXCHANGE = Text("The other way round: output and reference exchanged.")
 
 
@@ -51,6 +53,10 @@ class OwnIns:
             hint=Text("What the best method is chosen by."),
         )
         self._sentence = gui.add_html("", order=order + 0.6)
+        self._give: Any = gui.add_button(
+            _GIVE, color="gray", order=order + 0.7, visible=False, hint=_GIVE_HINT
+        )
+        self._give.on_click(lambda _: self._give_damped())
         self._exchange.on_update(if_user(self.follow))
         self._judge.on_update(if_user(self._say))
         self._damp.on_click(lambda _: self._frame.opening.damp_ins(self._roles()))
@@ -78,12 +84,23 @@ class OwnIns:
         self._run = run
         self._say()
 
+    @property
+    def _key(self) -> str:
+        """Quantity by which the best method is chosen."""
+        chosen = (key for key, (words, _) in JUDGED.items() if words == self._judge.value)
+        return next(chosen, next(iter(JUDGED)))
+
+    def _give_damped(self) -> None:
+        """Let the browser save the output as the best method would have damped it."""
+        run = self._run
+        method = None if run is None else best(run, self._key)
+        if run is not None and method is not None:
+            self._frame.opening.give_damped(run, method)
+
     def _say(self) -> None:
         run = self._run
         told = run is not None and run.against is not None
         self._judge.visible = told
-        key = next(
-            (key for key, (words, _) in JUDGED.items() if words == self._judge.value), next(iter(JUDGED))
-        )
-        said = sentence(run, key) if run is not None and told else ""
+        said = sentence(run, self._key) if run is not None and told else ""
+        self._give.visible = bool(said)
         self._sentence.content = notices.note((said,), "info") if said else ""

@@ -22,6 +22,7 @@ class FilesView(View):
 
     title = Text("Files")
     place = "edit"
+    asks = ("damp",)
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

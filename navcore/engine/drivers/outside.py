@@ -200,7 +200,7 @@ def _with_output(method: MethodRun, env: Environment, step_s: float, scenario: S
     assert isinstance(motion, InsTrack) and len(OUTPUT) == output.shape[1]
     if not motion.has_heading:
         output[:, 4] = np.nan
-    return replace(method, output=output)
+    return replace(method, output=output, moved=method.rows[:, : len(COMPONENTS)].copy())
 
 
 def unknown_errors(scenario: Scenario) -> frozenset[str]:
