@@ -109,11 +109,15 @@ def _warm_exports() -> None:
 def warm_sensors() -> None:
     """Compile what needs no law: motions, sensors and log of the error model, then the simulated IMU.
 
-    The legs come first: with the law they are all that the error model of most scenarios needs.
+    The legs come first: with the law they are all that the error model of most scenarios needs. The rest
+    gives way to the law, on which the first picture waits.
     """
     samples = int(60.0 * _RATE_HZ)
     scenarios = [_scenario({"duration_h": 0.02}, motion, 1.0, [_NETWORK]) for motion in _MOTIONS]
-    for given in (scenarios[2], *scenarios):
+    environment(scenarios[2])
+    if sys.platform != "win32":
+        os.nice(10)
+    for given in scenarios:
         environment(given)
     for given in scenarios[:3]:
         for with_sums in (False, True):
