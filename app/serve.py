@@ -284,27 +284,33 @@ def open_dashboard(
     from schuler_bench.http.server import start
     from schuler_bench.session.store import session_key
 
+    if inner is None:
+        kernels.begin()
     guarded.start(_READERS)
     helper.start()
     dashboard = Dashboard(state, views)
-    server = start(
-        host,
-        port,
-        token=token,
-        allow_origins=allow_origins,
-        frame_origins=frame_origins,
-        on_connect=dashboard.on_connect,
-        on_disconnect=dashboard.on_disconnect,
-        page_scripts=[
-            *LANGUAGE_SCRIPTS,
-            *(_STATIC / f"{name}.js" for name in _SCRIPTS),
-            *scripts(views),
-        ],
-        limits=limits,
-        inner=inner,
-        metrics=lambda: dashboard.metrics,
-        session_ids=SessionIds(session_key(state), dashboard.knows),
-    )
+    try:
+        server = start(
+            host,
+            port,
+            token=token,
+            allow_origins=allow_origins,
+            frame_origins=frame_origins,
+            on_connect=dashboard.on_connect,
+            on_disconnect=dashboard.on_disconnect,
+            page_scripts=[
+                *LANGUAGE_SCRIPTS,
+                *(_STATIC / f"{name}.js" for name in _SCRIPTS),
+                *scripts(views),
+            ],
+            limits=limits,
+            inner=inner,
+            metrics=lambda: dashboard.metrics,
+            session_ids=SessionIds(session_key(state), dashboard.knows),
+        )
+    except InputError:
+        kernels.stop()
+        raise
     # No axes cross in the middle of the map; they belong to the server's scene.
     server.viser.scene.world_axes.visible = False
     dashboard.keeping.watch(

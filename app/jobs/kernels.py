@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from navcore.foundation import kernel_wait
+from navcore.foundation.errors import InputError
 
 COMPILING = "Compiling the kernels, once: about a minute"
 _LOOK_S, _SAY_S, _BEGINS_WITHIN_S = 0.5, 2.0, 30.0
@@ -45,13 +46,22 @@ def words() -> str:
     return "" if _state.compiling is None else ": ".join(filter(None, (COMPILING, str(_state.compiling))))
 
 
+def begin() -> None:
+    """Start the process that compiles, where kernels are missing, before the server does anything else."""
+    from navcore.foundation.kernel_cache import ready
+
+    with suppress(InputError):  # `prepare` says it
+        if _state.process is None and not ready():
+            _state.process = _start()
+
+
 def prepare(*, start: bool, tell: Callable[[str], None]) -> None:
     """Have the kernels compiled that are missing; returns at once.
 
     Parameters
     ----------
     start : bool
-        Start a process that compiles; False: the parent of this one has.
+        Start a process that compiles, unless `begin` has; False: the parent of this one has.
     tell : callable
         ``tell(line)``, every few seconds and when all is done.
 
@@ -67,7 +77,8 @@ def prepare(*, start: bool, tell: Callable[[str], None]) -> None:
     _state.compiling = kernel_wait.Compiling(0, 0, "")
     kernel_wait.when_missing(kernel_wait.Need.RAISE)
     kernel_wait.expect(True)
-    _state.process = _start() if start else None
+    if start and _state.process is None:
+        _state.process = _start()
     threading.Thread(target=_follow, args=(_state.process, tell), name="kernels", daemon=True).start()
 
 
