@@ -139,11 +139,17 @@ class _Space:
         return None if [*other.faults()] else setting.method
 
     def place(self, method: Method) -> np.ndarray:
-        """Place of a setting."""
+        """Place of a setting; the middle of the range of a parameter that has no value.
+
+        One that is not given has the value that follows from the others.
+        """
         other = self._form.scenario.model_copy(update={"method": (method,)})
-        values = present(other, self.varied)
-        known = np.where(np.isfinite(values), values, present(self._form.scenario, self.varied))
-        return np.array([one.place(float(value)) for one, value in zip(self.varied, known, strict=True)])
+        follows = method.network.values(other.omega_s)
+        places = []
+        for one, given in zip(self.varied, present(other, self.varied).tolist(), strict=True):
+            value = given if np.isfinite(given) else follows.get(one.path[-1], np.nan)
+            places.append(one.place(float(value)) if np.isfinite(value) else 0.5)
+        return np.array(places)
 
     def orders(self, methods: Sequence[Method]) -> list[tuple[float, float]]:
         """Keys by which methods are ordered, best first: smooth share, largest median over its limit."""

@@ -18,7 +18,7 @@ from navcore.design.forms import IDS, Form, forms_of
 from navcore.design.measures import Setting, measure, read_objective
 from navcore.design.search import REFUSED, Effort, Search
 from navcore.design.share_search import best_settings, coarse
-from navcore.design.shares import Share, shares_of
+from navcore.design.shares import shares_of, smooth_share
 from navcore.design.ship import Ship
 from navcore.design.vary import read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
@@ -32,7 +32,7 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
 
-SEARCH_SEEDS, FEW_SEEDS = 160, 16
+SEARCH_SEEDS, FEW_SEEDS = 400, 16
 """Of the choice among the settings that a search has found, and of one over several scenarios."""
 _CHOICE_S = 30.0
 """Processor time of that choice, about."""
@@ -136,18 +136,22 @@ def tuned_methods(
     methods = [method for found in candidates.values() for method in found]
     everywhere = (scenario, *spread.scenarios) if spread.scenarios else (coarse(scenario),)
     numbers = range(SEARCHED, SEARCHED + _seeds(everywhere[0], methods, spread))
-    shares: list[tuple[Share, ...]] = []
+    shares: list[list[tuple[float, float]]] = []
     for k, one in enumerate(everywhere):
         span = 0.3 / len(everywhere)
         part = part_of(progress, 0.7 + k * span, 0.7 + (k + 1) * span)
         results = outcomes(one, methods, numbers, part, cancelled)
         if not results:
             return [found[0] for found in candidates.values()], left_out
-        shares.append(shares_of(Ship(one, True, INTERVALS, drawn=True), methods, results))
+        ship = Ship(one, True, INTERVALS, drawn=True)
+        met = (share.met for share in shares_of(ship, methods, results))
+        by_method = zip(*results, strict=True)
+        near = (smooth_share(Setting(ship, m), own) for m, own in zip(methods, by_method, strict=True))
+        shares.append([*zip(met, near, strict=True)])
     best, at = [], 0
     for found in candidates.values():
-        places = range(at, at + len(found))
-        best.append(methods[min(places, key=lambda i: _order(spread, [row[i] for row in shares]))])
+        own = [row[at : at + len(found)] for row in shares]
+        best.append(found[_best_of(spread, own, len(numbers))])
         at += len(found)
     return best, left_out
 
@@ -160,10 +164,28 @@ def _seeds(scenario: Scenario, methods: Sequence[Method], spread: Spread) -> int
     return max(FEW_SEEDS, min(SEARCH_SEEDS, int(_CHOICE_S / max(each_s, 1e-9))))
 
 
-def _order(spread: Spread, shares: Sequence[Share]) -> tuple[float, float, float]:
-    """Key of a method by its shares in all scenarios, best first: what counts, then all of them."""
-    met, ratios = [share.met for share in shares], [share.order[1] for share in shares]
-    return -spread.of_shares(met), -float(np.mean(met)), spread.of_ratios(ratios)
+def _best_of(spread: Spread, shares: Sequence[Sequence[tuple[float, float]]], seeds: int) -> int:
+    """Place of the method with the largest smooth share, of those whose share may be the largest.
+
+    The largest of several shares on so few seeds is partly luck; within a standard deviation of it, the
+    smooth share tells more.
+
+    Parameters
+    ----------
+    spread : Spread
+        Which of the scenarios counts.
+    shares : sequence of sequences of (float, float)
+        Share and smooth share, of each scenario and method.
+    seeds : int
+        Behind each share.
+    """
+    met, near = (
+        np.array([spread.of_shares([row[k][which] for row in shares]) for k in range(len(shares[0]))])
+        for which in (0, 1)
+    )
+    largest = met.max()
+    luck = math.sqrt(largest * (1.0 - largest) / seeds)
+    return int(np.argmax(np.where(met >= largest - luck, near, -math.inf)))
 
 
 def _candidates(form: Form, cancelled: Callable[[], bool] | None, spread: Spread = NO_SPREAD) -> list[Method]:
