@@ -10,6 +10,8 @@ import numpy as np
 
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from navcore.quantities import COMPONENTS
+from schuler_bench.plots.lengths import curves_of, with_lengths
 
 if TYPE_CHECKING:
     from navcore.design.bands import Bands
@@ -31,8 +33,8 @@ class Envelope:
     ----------
     t_s : ndarray, shape (m,)
         Times, s.
-    low, high : tuple of ndarray, each shape (m, 8), or None
-        For every method the edges of the quantities of `navcore.quantities.NAMES`, SI; None for a
+    low, high : tuple of ndarray, each shape (m, 10), or None
+        For every method the edges of its curves (`schuler_bench.plots.lengths.curves_of`), SI; None for a
         method without a band.
     words : str
         What the band is.
@@ -71,7 +73,7 @@ def envelope(runs: Sequence[Run]) -> Envelope:
         series = [method.plot for method in methods]
         pairs = 2 if len(series[0].t_s) > 2 and series[0].t_s[0] > 0.0 else 1
         bins = min(len(each.t_s) for each in series) // pairs
-        stacked = np.stack([each.values[: bins * pairs].reshape(bins, pairs, -1) for each in series])
+        stacked = np.stack([curves_of(one)[: bins * pairs].reshape(bins, pairs, -1) for one in methods])
         low.append(np.percentile(stacked.min(axis=2), LOWEST, axis=0))
         high.append(np.percentile(stacked.max(axis=2), HIGHEST, axis=0))
         times.append(series[0].t_s[: bins * pairs].reshape(bins, pairs).mean(axis=1))
@@ -93,7 +95,7 @@ _MOST_NAMED = 2
 
 
 def covariance_envelope(scenario: Scenario, bands: Bands) -> Envelope:
-    """Bands of one standard deviation on both sides of zero; of the position from zero up.
+    """Bands of one standard deviation on both sides of zero; of a length from zero up.
 
     Parameters
     ----------
@@ -117,8 +119,9 @@ def covariance_envelope(scenario: Scenario, bands: Bands) -> Envelope:
                 Text("{name}: the covariance that the Kalman filter computes for itself.", name=method.name)
             )
         distance = np.hypot(band.sigma[:, 5], band.sigma[:, 6])
-        high.append(np.column_stack([band.sigma, distance]))
-        low.append(np.column_stack([-band.sigma, np.zeros_like(distance)]))
+        edge = with_lengths(np.column_stack([band.sigma, distance]))
+        high.append(edge)
+        low.append(np.where(np.arange(edge.shape[1]) < len(COMPONENTS), -edge, 0.0))
     names = (
         Text.joined(", ", missing)
         if len(missing) <= _MOST_NAMED

@@ -54,6 +54,8 @@ class Curve:
         px.
     state : State
         How it is shown (`schuler_bench.plots.legend`).
+    limit : (str, float) or None
+        It is the line of a limit: what is limited, and the plot's unit in that of the limit's box.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Curve:
     dash: Dash = ()
     width: float = style.CURVE_WIDTH
     state: State = "shown"
+    limit: tuple[str, float] | None = None
 
     @property
     def series(self) -> dict[str, Any]:
@@ -71,6 +74,7 @@ class Curve:
             {"points": {"show": False}, "pxAlign": 0, "label": self.name, "width": self.width}
             | {"stroke": self.color[:7] + FAINT if self.state == "dimmed" else self.color}
             | ({"dash": self.dash} if self.dash else {})
+            | ({"limit": self.limit} if self.limit else {})
             | _FLAGS[self.state]
         )
 
@@ -267,7 +271,7 @@ class UplotFigure:
 
     def config_key(self) -> tuple[Any, ...]:
         """Compare equal while only the numbers changed: then sending ``data`` alone is enough."""
-        looks = tuple((c.name, c.color, c.dash, c.width, c.state) for c in self.curves)
+        looks = tuple((c.name, c.color, c.dash, c.width, c.state, c.limit) for c in self.curves)
         scale = self.floor, self.ticks, self.decades, self.bands, self.period
         return self.key, self.symbol, self.unit.name, self.time_unit.name, looks, scale
 

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from navcore.engine.run import Run, in_places
-from navcore.quantities import ERRORS, LIMITED, QUANTITIES, STATISTICS
+from navcore.quantities import ERRORS, LIMITED, QUANTITIES, STATISTICS, VECTORS
 from navcore.scenario.model import Scenario
 from schuler_bench.plots import style
 from schuler_bench.plots.effective import SHOWN
@@ -25,14 +25,17 @@ AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
 """Quantities on the axes of the Pareto fronts."""
 
 CURVES: dict[str, tuple[str, ...]] = {
-    "overview": ("phi_e", "dve", "phi_n", "position"),
+    "overview": ("tilt", "velocity", "phi_e", "position"),
     "all": ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position"),
-    "attitude": ("phi_e", "phi_n", "phi_u"),
-    "velocity": ("dve", "dvn"),
+    "attitude": ("tilt", "phi_e", "phi_n", "phi_u"),
+    "velocity": ("velocity", "dve", "dvn"),
     "position": ("position", "dlat", "dlon"),
     "verification": (),
 }
-"""Groups of error curves; the keys of `navcore.quantities.ERRORS` in each."""
+"""Groups of error curves; the keys of `navcore.quantities.ERRORS` and `VECTORS` in each.
+
+The lengths of tilt and velocity error come first: limits are about them and drawn in their plots.
+"""
 
 TO_LOG = ("ve_log", "vn_log")
 """Velocity minus log, east and north: what the spectrum shows of a run on a ship's own INS beside errors."""
@@ -49,7 +52,7 @@ def _one_of(names: Collection[str]) -> AfterValidator:
 
 
 def _is_of_curves(text: str) -> str:
-    keys = {error.key for error in ERRORS}
+    keys = {error.key for error in (*ERRORS, *VECTORS)}
     if text not in CURVES and not keys.issuperset(text.split(",")):
         raise ValueError(f"must be one of {', '.join(CURVES)}, or of {', '.join(sorted(keys))} with commas")
     return text
@@ -79,8 +82,8 @@ class Display(BaseModel):
     envelope : str
         Bands behind the error curves: one standard deviation by covariance, over 20 seeds, or none.
     curves : str
-        What the tab "Errors" shows: a group of `CURVES`, or keys of `navcore.quantities.ERRORS` with commas
-        between them, as a lesson chooses.
+        What the tab "Errors" shows: a group of `CURVES`, or keys of `navcore.quantities.ERRORS` and
+        `VECTORS` with commas between them, as a lesson chooses.
     spectrum : str
         Error whose spectrum is shown: a key of `navcore.quantities.ERRORS`, or of `TO_LOG`.
     baseline : int or None

@@ -9,7 +9,7 @@ from navcore.engine.measures import measure, needs_seeds, verdict
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.verdicts import Judgement
 from navcore.engine.verdicts import Verdict as Word
-from navcore.quantities import ERRORS, POSITION, QUANTITIES, Quantity, value_unit
+from navcore.quantities import ERRORS, QUANTITIES, VECTORS, Quantity, value_unit
 from navcore.scenario.requirement import Requirement
 from schuler_bench.editing.limits import BOXES, shown_limit
 
@@ -105,24 +105,50 @@ def limits_of(requirements: Sequence[Requirement]) -> dict[str, float]:
     return limits
 
 
-def _drawn(row: Quantity) -> bool:
-    """Whether curves have a line for a limit: of a largest value, and of the position's root mean square."""
-    if row.over or row.axes in ("seclat", "roll", "pitch"):
-        return False
-    return row.statistic == "max_abs" or (row.statistic == "rms" and row.kind is POSITION)
+@dataclass(frozen=True)
+class LimitLine:
+    """Line of a limit in the plot of an error.
 
-
-def error_limits(requirements: Sequence[Requirement], run: Run) -> dict[str, float]:
-    """Limits to draw in the error plots, SI: key of `schuler_bench.views.errors.figure.error_plots` -> value.
-
-    One that lies far above all curves is left out: it would press them flat.
+    Attributes
+    ----------
+    quantity : str
+        Key of what is limited.
+    value : float
+        Largest allowed magnitude, SI.
+    from_s : float
+        Time from which the limit counts, s.
     """
-    limits, drawn = limits_of(requirements), {}
-    for key, limit in limits.items():
-        for error in ERRORS:
-            if error.name not in QUANTITIES[key].errors or not _drawn(QUANTITIES[key]):
-                continue
-            largest = max(method.errors[error.name]["max_abs"] for method in run.methods)
-            if limit <= _IN_SIGHT * largest:
-                drawn[error.key] = min(limit, drawn.get(error.key, math.inf))
+
+    quantity: str
+    value: float
+    from_s: float = 0.0
+
+
+def _curve_of(row: Quantity) -> str:
+    """Key of the curve that stays below its limit exactly where the limit is met; "" for none.
+
+    That is the curve of the very length of which the largest value is judged. A root mean square may be met
+    by a curve that passes the limit, and no curve shows what many seeds make.
+    """
+    if row.over or row.statistic != "max_abs" or row.axes in ("seclat", "roll", "pitch") or row.kind is None:
+        return ""
+    return next((one.key for one in (*VECTORS, *reversed(ERRORS)) if one.kind is row.kind), "")
+
+
+def error_limits(requirements: Sequence[Requirement], run: Run) -> dict[str, tuple[LimitLine, ...]]:
+    """Lines of limits by the keys of `schuler_bench.views.errors.figure.error_plots`.
+
+    A limit that lies far above all curves is left out: it would press them flat.
+    """
+    drawn: dict[str, tuple[LimitLine, ...]] = {}
+    for one in requirements:
+        row = QUANTITIES[one.quantity]
+        if key := _curve_of(row):
+            largest = max(
+                (measure(method, one.quantity) for method in run.methods if method.status == "ok"),
+                default=math.inf,
+            )
+            if one.limit_si <= _IN_SIGHT * largest:
+                begins = 0.0 if math.isinf(one.begins_s) else one.begins_s
+                drawn[key] = (*drawn.get(key, ()), LimitLine(one.quantity, one.limit_si, begins))
     return drawn

@@ -95,6 +95,31 @@ ERRORS = (
     ),
 )
 """In the order of the recorder's columns; the last is the distance that the two before it make."""
+
+
+@dataclass(frozen=True)
+class ErrorVector:
+    """Length of an error that has a component along each horizontal axis.
+
+    Attributes
+    ----------
+    key, symbol, title : str
+        As of a `RecordedError`.
+    kind : Kind
+        Kind of the components; its name is that of the length in `LENGTHS`.
+    """
+
+    key: str
+    symbol: str
+    title: str
+    kind: Kind
+
+
+VECTORS = (
+    ErrorVector("tilt", "|φ|", Text("Tilt |φ|"), TILT),
+    ErrorVector("velocity", "|δV|", Text("Velocity error |δV|"), VELOCITY),
+)
+"""Lengths that limits on the tilt and the velocity error are about; the position error is recorded itself."""
 NAMES = tuple(error.name for error in ERRORS)
 COMPONENTS = NAMES[:-1]
 """Errors that are states of the error model."""

@@ -97,7 +97,7 @@ def test_sliders_and_plots_say_what_they_are_and_show(moving: Bench) -> None:
     page.wait_for_function("look.named")
     names = page.evaluate("() => [...document.querySelectorAll('[role=figure]')].map(f => f.ariaLabel)")
     assert any("Damping network H" in name and "complementary" in name for name in names)
-    assert any(name.startswith("Plot over time: δVE (m/s)") and "classic2" in name for name in names)
+    assert any(name.startswith("Plot over time: |δV| (m/s)") and "classic2" in name for name in names)
     moving.tab("Sensors")
     slider = page.get_by_role("slider", name=label_of("imu.gyro_arw_dpsh"), exact=True)
     page.wait_for_function(

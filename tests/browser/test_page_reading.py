@@ -13,6 +13,7 @@ from tests.browser.driver import Bench
 def reading(bench: Bench) -> Bench:
     """The shared page with three networks, and how they are shown."""
     bench.reset("liu-networks", "Frequency", "Errors", "View", selected=2)
+    bench.show(curves="all")
     return bench
 
 

@@ -19,7 +19,7 @@ from schuler_bench.plots.pinned import restyled, together
 from schuler_bench.plots.plotly_data import PlotlyFigure, values_of
 from schuler_bench.plots.saved import time_figure
 from schuler_bench.session.display import Display
-from schuler_bench.views.errors.figure import TITLES, error_plots
+from schuler_bench.views.errors.figure import RECORDED, error_plots
 from schuler_bench.views.frequency.figure import frequency_view
 from schuler_bench.views.metrics.table import metrics_html
 from schuler_bench.views.misprints.figure import SHOWN, comparison_plot
@@ -43,7 +43,7 @@ from tests.unit.figures_runs import (
 Make = Callable[[Run], PlotlyFigure]
 TRANSFER = {key: partial(frequency_view, shown=key, discrete=True) for key in (*TRANSFERS, OPEN_LOOP)}
 LOOPS: dict[str, Make] = {**TRANSFER, "poles": poles, "whole": whole_system_figure, "step": step}
-SPECTRA: dict[str, Make] = {key: partial(spectrum, key=key) for key in TITLES}
+SPECTRA: dict[str, Make] = {key: partial(spectrum, key=key) for key in RECORDED}
 OVER_TIME: dict[str, Make] = {
     scale: lambda run, scale=scale: time_figure(list(error_plots(run, display=Display(scale=scale)).values()))
     for scale in ("linear", "log")

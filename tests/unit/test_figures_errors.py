@@ -1,20 +1,26 @@
 """Error curves over time: units, scales, pins, verification and what the legend makes of them."""
 
 import inspect
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from navcore.engine.measures import measure
 from navcore.engine.simulation import simulate
 from navcore.engine.verification import Verification, verify
+from navcore.foundation.units import ARCSEC
 from navcore.mechanization.recorder import NAMES
+from navcore.quantities import limit_unit
 from navcore.scenario.file import load
+from navcore.scenario.requirement import Requirement
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import STATES, after
 from schuler_bench.plots.uplot import stack_heights
 from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import LimitLine, asked, error_limits
 from schuler_bench.session.shown import Shown, Verified
 from schuler_bench.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
 from schuler_bench.views.errors.view import error_curves, legend_html, moving
@@ -22,11 +28,13 @@ from schuler_bench.views.learn.lessons import lessons
 from tests.unit.figures_runs import Pinned, diverging, run_of, static_run
 
 KEYS = ("phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position")
+LENGTHS = {"tilt": "tilt_max_arcsec", "velocity": "velocity_max_mps"}
+"""Keys of the curves of a length, and the quantity that is its largest value."""
 
 
 def test_keys_are_the_agreed_ones_and_every_group_uses_them() -> None:
-    assert tuple(error_plots(static_run())) == KEYS
-    assert {key for keys in GROUPS.values() for key in keys} == set(KEYS)
+    assert tuple(error_plots(static_run())) == (*LENGTHS, *KEYS)
+    assert {key for keys in GROUPS.values() for key in keys} == {*LENGTHS, *KEYS}
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -170,20 +178,60 @@ def test_pins_and_overlays_with_other_bins_keep_their_peaks_and_end_where_they_e
         for curve, method in zip(plot.curves[3:], 2 * shorter.methods, strict=True):
             assert np.isnan(curve.values[plot.time > 1.1]).all()
             assert np.isfinite(curve.values[plot.time < 0.99]).all()
-            peak = method.errors[plot.quantity]["max_abs"] / plot.unit.si
-            assert np.nanmax(np.abs(curve.values)) == pytest.approx(peak, rel=0.02)
+            if plot.key in LENGTHS:
+                peak = measure(method, LENGTHS[plot.key])
+            else:
+                peak = method.errors[plot.quantity]["max_abs"]
+            assert np.nanmax(np.abs(curve.values)) * plot.unit.si == pytest.approx(peak, rel=0.02)
     html = legend_html(run, None, (pin,))
     assert "before &lt;b&gt;: compass" in html and pin.hex in html
 
 
-def test_limits_are_lines_at_both_signs() -> None:
-    plots = error_plots(static_run(), limits={"dve": 0.5, "position": 1852.0})
+def test_limits_are_lines_at_both_signs_from_their_time_on() -> None:
+    limits = {
+        "phi_u": [LimitLine("heading_max_arcmin", 5e-4)],
+        "tilt": [LimitLine("tilt_max_arcsec", 1e-4, 3600.0)],
+    }
+    plots = error_plots(static_run(), limits=limits)
     lines = {
-        key: [curve.values[0] * plot.unit.si for curve in plot.curves if curve.name == "limit"]
+        key: [curve.values[-1] * plot.unit.si for curve in plot.curves if curve.limit]
         for key, plot in plots.items()
     }
-    drawn = {key: pytest.approx(values) for key, values in {"dve": [0.5, -0.5], "position": [1852.0]}.items()}
+    drawn = {key: pytest.approx(values) for key, values in {"phi_u": [5e-4, -5e-4], "tilt": [1e-4]}.items()}
     assert {key: values for key, values in lines.items() if values} == drawn
+    plot = plots["tilt"]
+    line = plot.curves[-1]
+    np.testing.assert_array_equal(np.isnan(line.values), plot.time * plot.time_unit.si < 3600.0 - 1e-6)
+    quantity, size = line.limit or ("", 0.0)
+    assert quantity == "tilt_max_arcsec" and size * line.values[-1] == pytest.approx(1e-4 / ARCSEC)
+
+
+WATCHED = ("tilt_max_arcsec", "velocity_max_mps", "heading_max_arcmin", "position_max_m")
+NOISY = {
+    "run": {"duration_h": 6.0},
+    "imu": {"gyro_bias_dph": [0.01, 0.02, 0.0], "accel_vrw_ugpshz": 50.0, "gyro_arw_dpsh": 0.005},
+    "reference": {"kind": "log", "noise_mps": 0.3, "bias_mps": [0.3, -0.2]},
+}
+
+
+@pytest.mark.parametrize("part", [0.999, 1.001])
+@pytest.mark.parametrize("from_h", [0.0, 2.5])
+def test_a_curve_passes_a_limits_line_exactly_where_the_limit_is_missed(part: float, from_h: float) -> None:
+    """The limit is on the vector; its lines were on each axis, and every curve inside them was "missed"."""
+    blocks = [{"quantity": key, "at_most": 1.0, "from_h": from_h} for key in WATCHED]
+    first = run_of(**NOISY, requirement=blocks)
+    for key in WATCHED:
+        for place, method in enumerate(first.methods):
+            limit = part * measure(method, key, from_h * 3600.0)
+            if not 0.0 < limit < math.inf:
+                continue
+            one = Requirement(quantity=key, at_most=limit / limit_unit(key), from_h=from_h)
+            (verdict,) = asked(first, [one])
+            ((where, lines),) = error_limits([one], first).items()
+            plot = error_plots(first, limits={where: lines})[where]
+            line = np.abs(plot.curves[-1].values)
+            passed = np.any(np.abs(plot.curves[place].values) > line * (1.0 + 1e-9))
+            assert passed == (verdict.words[place] == "missed"), (key, method.method.name)
 
 
 def test_logarithmic_axis_shows_magnitudes_over_whole_decades() -> None:

@@ -70,6 +70,18 @@
     if (target instanceof Element && target.matches(VIEWPORT)) target.toggleAttribute("data-sb-scrolled", target.scrollTop > 0);
   }, true);
 
+  // Heights with which plots over time, in the order of their rows, fill a room that they leave or exceed by ``spare``, all
+  // curves in areas as high as each other's. One that has just been made anew has the server's height beside the others.
+  function evened(drawn, spare) {
+    const abreast = new Set(drawn.map((chart) => Math.round(chart.root.getBoundingClientRect().left))).size;
+    const rows = drawn.map((_, place) => Math.floor(place / abreast));
+    const most = (size) => rows.reduce((found, row, place) => Object.assign(found, { [row]: Math.max(found[row] ?? 0, size(drawn[place])) }), []);
+    const beside = most(({ height, over }) => height - over.clientHeight); // titles and numbers of the time axis
+    const total = (sizes) => sizes.reduce((sum, size) => sum + size, 0);
+    const area = Math.floor((total(most(({ height }) => height)) + spare - total(beside)) / beside.length);
+    return rows.map((row) => Math.max(area + beside[row], LEAST_PX.chart));
+  }
+
   function fill(viewport) {
     if (viewport.getClientRects().length === 0) return; // of a tab that has just gone: the panel is another's now
     raise(viewport);
@@ -77,21 +89,23 @@
     const frame = viewport.getBoundingClientRect();
     const seen = (plot) => viewport.contains(plot) && plot.getClientRects().length > 0;
     const figures = [...viewport.querySelectorAll(".js-plotly-plot")].filter((plot) => plot._fullLayout && seen(plot));
-    const drawn = charts().filter((chart) => seen(chart.root));
+    const inOrder = (one, other) => (one.root.compareDocumentPosition(other.root) & Node.DOCUMENT_POSITION_FOLLOWING ? -1 : 1);
+    const drawn = charts().filter((chart) => seen(chart.root)).sort(inOrder);
     const boxes = [...figures, ...drawn.map((chart) => chart.root)].map((plot) => plot.getBoundingClientRect());
     if (frame.height === 0 || boxes.length === 0) return;
     const content = viewport.firstElementChild.getBoundingClientRect();
     const spare = Math.floor(frame.height) - Math.ceil(content.height);
-    if (spare >= 0 && spare < SPARE_PX) return;
+    const heights = figures.length === 0 ? evened(drawn, spare) : null;
+    if (spare >= 0 && spare < SPARE_PX && !heights?.some((wanted, place) => Math.abs(wanted - drawn[place].height) >= SPARE_PX)) return;
     const each = Math.floor(spare / new Set(boxes.map(({ top }) => Math.round(top))).size);
     for (const figure of figures) {
       const { height } = figure._fullLayout;
       const wanted = Math.max(Math.floor(height + each), LEAST_PX.plotly);
       if (wanted !== height) window.schuler.setHeight(figure, wanted);
     }
-    for (const chart of drawn) {
+    for (const [place, chart] of drawn.entries()) {
       const { width, height } = chart;
-      const wanted = Math.max(height + each, LEAST_PX.chart);
+      const wanted = Math.max(heights?.[place] ?? height + each, LEAST_PX.chart);
       if (wanted !== height) chart.setSize({ width, height: wanted });
     }
     dispatchEvent(new Event("filled-plots")); // page.js reports them
@@ -147,5 +161,7 @@
       for (const element of [viewport, viewport.firstElementChild]) sizes.observe(element);
     }
     strips.forEach((strip) => sizes.observe(strip));
+    // One that is made anew beside others may be lower than they are, and change no size but its own.
+    for (const { root } of charts()) if (root.closest(`[data-dock-column] ${VIEWPORT}`)) sizes.observe(root);
   });
 })();

@@ -20,7 +20,8 @@
 
   addEventListener("pointerdown", (event) => {
     if (event.pointerType !== "touch") return;
-    const over = event.isPrimary && event.target instanceof Element && event.target.closest(".u-over");
+    const on = event.isPrimary && event.target instanceof Element ? event.target : null;
+    const over = on?.closest(".sb-limit-line") ? null : on?.closest(".u-over"); // a limit is dragged (limits.js)
     held = over ? { over, id: event.pointerId, x: event.clientX, y: event.clientY, moved: false } : null;
   }, true);
 

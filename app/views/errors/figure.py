@@ -6,14 +6,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from navcore.engine.run import ENDINGS, MethodRun, PlotSeries, Run
+from navcore.engine.run import ENDINGS, MethodRun, Run
 from navcore.engine.verification import Verification
 from navcore.foundation.text import Text
-from navcore.foundation.units import HOUR
-from navcore.quantities import ERRORS, NAMES, Kind
+from navcore.foundation.units import HOUR, UNITS
+from navcore.quantities import (
+    ERRORS,
+    NAMES,
+    QUANTITIES,
+    VECTORS,
+    ErrorVector,
+    Kind,
+    RecordedError,
+    components,
+)
 from schuler_bench.plots import style
 from schuler_bench.plots.envelope import Envelope
 from schuler_bench.plots.legend import counts
+from schuler_bench.plots.lengths import curves_of, on_times
 from schuler_bench.plots.pinned import PIN_WIDTH, Pinned, pinned_methods
 from schuler_bench.plots.units import (
     AUTO,
@@ -26,6 +36,7 @@ from schuler_bench.plots.units import (
 )
 from schuler_bench.plots.uplot import Curve, Dash, UplotFigure
 from schuler_bench.session.display import CURVES, Display
+from schuler_bench.session.requirements import LimitLine
 
 _CUT = 3.0
 """A diverged method is drawn up to this many times the largest value of the others."""
@@ -41,6 +52,13 @@ _SUITABLE: dict[str, Callable[[float], Unit]] = {
     "length": length_unit,
 }
 """Unit that suits a peak where the display leaves that of a dimension open."""
+_COLUMNS: tuple[tuple[int, RecordedError | ErrorVector], ...] = (
+    *enumerate(VECTORS, len(ERRORS)),
+    *enumerate(ERRORS),
+)
+"""Columns of `curves_of` and what they hold, in the order of the plots: a limit is about the lengths."""
+_LENGTHS = {*(vector.key for vector in VECTORS), "position"}
+"""Keys of errors that have no sign."""
 _UNSEEN = "rgba(0,0,0,0)"
 _LIMIT_DASH: Dash = (12, 5)
 _FEWEST_DECADES, _MOST_DECADES = 3, 8
@@ -48,7 +66,9 @@ _BAND = "2E"
 """Opacity of an envelope, as colours carry it."""
 
 
-TITLES = {error.key: error.title for error in ERRORS}
+RECORDED = {error.key: error.title for error in ERRORS}
+"""Titles of the plots of recorded errors by key."""
+TITLES = {vector.key: vector.title for vector in VECTORS} | RECORDED
 """Titles of the plots of `error_plots` by key."""
 
 STACKS: dict[str, str] = {
@@ -58,7 +78,7 @@ STACKS: dict[str, str] = {
 }
 """Titles of the groups of `schuler_bench.session.display.CURVES` whose plots stand one above the other."""
 GROUPS: dict[str, tuple[str, ...]] = {
-    "Overview": ("phi_e", "phi_n", "dve", "dvn", "position"),
+    "Overview": ("tilt", "phi_e", "phi_n", "velocity", "dve", "dvn", "position"),
     **{title: CURVES[group] for title, group in STACKS.items()},
 }
 """Stacks of plots that belong together: title -> keys of `error_plots`, top to bottom."""
@@ -90,8 +110,9 @@ class _Line:
         How they look.
     method : MethodRun
         Whose they are.
-    values : ndarray, shape (m, 8)
-        At the times of the plots, SI; NaN where there is nothing to show.
+    values : ndarray, shape (m, 10)
+        At the times of the plots, SI: the recorded errors, then the lengths of `VECTORS`; NaN where there is
+        nothing to show.
     """
 
     curve: Curve
@@ -106,9 +127,9 @@ def error_plots(
     display: Display | None = None,
     pins: Sequence[Pinned] = (),
     envelope: Envelope | None = None,
-    limits: Mapping[str, float] | None = None,
+    limits: Mapping[str, Sequence[LimitLine]] | None = None,
 ) -> dict[str, UplotFigure]:
-    """Error curves of all methods, by the keys of `navcore.quantities.ERRORS`.
+    """Error curves of all methods, by the keys of `navcore.quantities.VECTORS` and `ERRORS`.
 
     Quantities of one family (the tilts, the velocities, the positions) share one unit, so that plots above
     each other compare at a glance; one that is far smaller than its family has a unit of its own.
@@ -126,7 +147,7 @@ def error_plots(
     envelope : Envelope, optional
         Filled bands behind the run's own curves.
     limits : mapping, optional
-        Key -> largest allowed magnitude (SI), drawn as dashed lines.
+        Key -> limits, drawn as dashed lines that can be dragged.
     """
     display = display or Display()
     time_s = _time_axis(run)
@@ -139,29 +160,33 @@ def error_plots(
     scaled = [line.method for line in lines if counts(line.curve.state)] or [line.method for line in lines]
     deciding = [method for method in scaled if method.status != "diverged"]
     cut = len(deciding) < len(scaled)
-    peaks = {error.key: _peak(deciding or scaled, error.name) for error in ERRORS}
     unknown = () if run.against is None else run.against.not_known
+    peaks = {error.key: _peak(deciding or scaled, error.name) for error in ERRORS}
+    peaks |= {
+        vector.key: max(peaks[one.key] for one in ERRORS if one.kind is vector.kind) for vector in VECTORS
+    }
     units = _units(peaks, display)
     plots: dict[str, UplotFigure] = {}
-    for column, error in enumerate(ERRORS):
+    for column, error in _COLUMNS:
         key = error.key
         unit, most = units[key], _CUT * peaks[key] if cut else math.inf
+        names = components(error.kind) if isinstance(error, ErrorVector) else (error.name,)
         plot = UplotFigure(
             key=key,
-            quantity=error.name,
+            quantity=error.name if isinstance(error, RecordedError) else error.key,
             title=error.title,
-            symbol=_symbol(error.symbol, peaks[key], error.name in unknown),
+            symbol=_symbol(error.symbol, peaks[key], not set(names).isdisjoint(unknown)),
             unit=unit,
             time_unit=unit_of_time,
             time=time,
             curves=tuple(replace(line.curve, values=_drawn(line, column, unit, most)) for line in lines),
-            floor=0.0 if key == "position" else None,
+            floor=0.0 if key in _LENGTHS else None,
             period=period,
         )
         if envelope is not None and len(envelope.t_s):
             plot = _with_band(plot, envelope, column, time_s, run)
-        if limits and key in limits:
-            plot = _with_limit(plot, limits[key])
+        for limit in (limits or {}).get(key, ()):
+            plot = _with_limit(plot, limit)
         plots[key] = _logarithmic(plot) if display.scale == "log" else plot
     return plots
 
@@ -173,8 +198,8 @@ def _lines(
     lines = []
     for method in run.lines:
         state = display.state_of(method.method.name)
-        values = np.full((len(time_s), len(NAMES)), np.nan)
-        values[: len(method.plot.values)] = method.plot.values
+        values = np.full((len(time_s), len(_COLUMNS)), np.nan)
+        values[: len(method.plot.values)] = curves_of(method)
         curve = Curve(legend_name(method), style.method_color(method.place), none, state=state)
         lines.append(_Line(curve, method, values))
     if overlay is not None:
@@ -186,10 +211,10 @@ def _lines(
                 color=color,
                 dash=_DASH,
             )
-            lines.append(_Line(curve, method, _on_times(time_s, method.plot)))
+            lines.append(_Line(curve, method, on_times(time_s, method.plot.t_s, curves_of(method))))
     for pin in pinned_methods(pins):
         curve = Curve(pin.label, pin.color, none, pin.dash, PIN_WIDTH, display.state_of(pin.label))
-        lines.append(_Line(curve, pin.method, _on_times(time_s, pin.method.plot)))
+        lines.append(_Line(curve, pin.method, on_times(time_s, pin.method.plot.t_s, curves_of(pin.method))))
     return lines
 
 
@@ -214,11 +239,13 @@ def _with_band(
     return replace(plot, curves=tuple(curves), bands=tuple(bands))
 
 
-def _with_limit(plot: UplotFigure, limit: float) -> UplotFigure:
+def _with_limit(plot: UplotFigure, limit: LimitLine) -> UplotFigure:
     """Add a line at the largest allowed value, and at its negative where that can be reached."""
+    shown = np.where(plot.time * plot.time_unit.si < limit.from_s - 1e-6, np.nan, limit.value / plot.unit.si)
+    size = plot.unit.si / UNITS[QUANTITIES[limit.quantity].limit_shown]
     lines = [
-        Curve(Text("limit"), style.DANGER, np.full(len(plot.time), value / plot.unit.si), _LIMIT_DASH, 1.0)
-        for value in ((limit,) if plot.floor is not None else (limit, -limit))
+        Curve(Text("limit"), style.DANGER, side * shown, _LIMIT_DASH, 1.0, limit=(limit.quantity, size))
+        for side in ((1.0,) if plot.floor is not None else (1.0, -1.0))
     ]
     return replace(plot, curves=(*plot.curves, *lines))
 
@@ -242,7 +269,8 @@ def _logarithmic(plot: UplotFigure) -> UplotFigure:
         replace(curve, values=np.maximum(size, 10.0**first))
         for curve, size in zip(plot.curves, sizes, strict=True)
     )
-    return replace(plot, symbol=f"|{plot.symbol}|", curves=curves, decades=(first, last), floor=None)
+    symbol = plot.symbol if plot.floor is not None else f"|{plot.symbol}|"
+    return replace(plot, symbol=symbol, curves=curves, decades=(first, last), floor=None)
 
 
 def _time_axis(run: Run) -> np.ndarray:
@@ -269,7 +297,7 @@ def _symbol(symbol: str, peak: float, unknown: bool) -> str:
 def _units(peaks: dict[str, float], display: Display) -> dict[str, Unit]:
     """Unit of each error: the wanted one, its kind's, or its own where that would leave it no digits."""
     units: dict[str, Unit] = {}
-    for error in ERRORS:
+    for _, error in _COLUMNS:
         kind, peak = error.kind, peaks[error.key]
         shared = kind_unit(kind, max(peaks[one.key] for one in ERRORS if one.kind is kind), display)
         legible = peak == 0.0 or peak >= _FEWEST_UNITS * shared.si
@@ -289,26 +317,6 @@ def _drawn(line: _Line, column: int, unit: Unit, most: float) -> np.ndarray:
     if line.method.status == "diverged" and most > 0.0:
         values = np.where(np.maximum.accumulate(~(np.abs(values) <= most)), np.nan, values)
     return np.ascontiguousarray(values / unit.si)
-
-
-def _on_times(time_s: np.ndarray, plot: PlotSeries) -> np.ndarray:
-    """Values of a run with other plot bins at the times of this one: each point the nearest one.
-
-    Of a bin's two extremes the first goes to a first one, so that noise keeps its width on the screen.
-    """
-    own_s = plot.t_s
-    if not len(own_s) or not len(time_s):
-        return np.full((len(time_s), len(NAMES)), np.nan)
-    pairs = 2 if own_s[0] > 0.0 and len(own_s) > 2 else 1
-    places = np.empty(len(time_s), np.int64)
-    for place in range(pairs):
-        mine, wanted = own_s[place::pairs], time_s[place::pairs]
-        later = np.clip(np.searchsorted(mine, wanted), 1, max(len(mine) - 1, 1)) if len(mine) > 1 else 0
-        nearer = np.where(wanted - mine[later - 1] < mine[later] - wanted, later - 1, later)
-        places[place::pairs] = pairs * nearer + place
-    spacing = (own_s[-1] - own_s[0]) / max(len(own_s) - 1, 1)
-    ended = time_s > own_s[-1] + pairs * spacing
-    return np.where(ended[:, None], np.nan, plot.values[places])
 
 
 def legend_name(method: MethodRun) -> str:

@@ -114,8 +114,8 @@ _GROUPS: dict[str, str] = {
 }
 """Titles of the groups of `schuler_bench.session.display.CURVES`."""
 _OF_THE_STEP = Text("Those of the lesson")
-_TWO_ABREAST = ("overview", "all")
-"""Groups in small plots: left, right."""
+_MOST_STACKED = 3
+"""More plots than these stand two abreast."""
 _TWO = '<div class="sb-two"></div>'
 _KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in TITLES.items()}
 _VERIFIED_KEYS: dict[str, str] = {
@@ -175,10 +175,10 @@ class ErrorsView(PictureView[ErrorCurves]):
                 Text("curves"),
                 tuple(_GROUPS),
                 hint=Text(
-                    "Overview: tilts, east velocity and position. All errors: north and heading too. "
-                    "Attitude, Velocity, Position: larger plots "
-                    "of a few. Verification: the full strapdown beside the linear model, and "
-                    "their difference."
+                    "Overview: length of tilt and velocity error, tilt about east, position error. All "
+                    "errors: every component. Attitude, Velocity, Position: larger plots of a few. "
+                    "A limit is a dashed line: drag it to set the limit. Verification: the full "
+                    "strapdown beside the linear model, and their difference."
                 ),
                 order=0,
             )
@@ -206,9 +206,9 @@ class ErrorsView(PictureView[ErrorCurves]):
         methods = self.frame.layout().alone
         if display.curves == "verification":
             return _verified_curves(found.verified, display, methods=methods)
-        small = display.curves in _TWO_ABREAST
-        curves = error_curves(found, display.chosen_curves, small, methods=methods)
-        return replace(curves, plots=moving(curves.plots)) if display.lesson else curves
+        curves = error_curves(found, display.chosen_curves, methods=methods)
+        plots = moving(curves.plots) if display.lesson else curves.plots
+        return replace(curves, plots=plots, two_abreast=len(plots) > _MOST_STACKED)
 
     def show(self, picture: ErrorCurves) -> None:
         """Show the plots that are chosen, below their legend."""
@@ -241,9 +241,7 @@ class ErrorsView(PictureView[ErrorCurves]):
         return pictures
 
 
-def error_curves(
-    found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast: bool = False, *, methods: bool = True
-) -> ErrorCurves:
+def error_curves(found: Shown, keys: Sequence[str] = tuple(TITLES), *, methods: bool = True) -> ErrorCurves:
     """Error curves of what is shown, with pins, envelope and limits."""
     plots = error_plots(
         found.run,
@@ -253,7 +251,7 @@ def error_curves(
         limits=error_limits(found.run.scenario.requirement, found.run),
     )
     legend = legend_html(found.run, None, found.pins, found.envelope, found.display, methods=methods)
-    return ErrorCurves({key: plots[key] for key in keys}, legend, two_abreast)
+    return ErrorCurves({key: plots[key] for key in keys}, legend)
 
 
 def moving(plots: dict[str, UplotFigure]) -> dict[str, UplotFigure]:

@@ -9,11 +9,11 @@ from schuler_bench.session.shown import Shown
 from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import if_user
-from schuler_bench.views.errors.figure import TITLES
+from schuler_bench.views.errors.figure import RECORDED
 from schuler_bench.views.spectrum.figure import FIRST, TO_LOG_TITLES, drawn_key, spectrum
 
 SPECTRUM_OF = Text("spectrum of")
-_KEYS = {title: key for key, title in (TITLES | TO_LOG_TITLES).items()}
+_KEYS = {title: key for key, title in (RECORDED | TO_LOG_TITLES).items()}
 _WORDS = {key: title for title, key in _KEYS.items()}
 
 
@@ -30,7 +30,7 @@ class SpectrumView(PlotlyView):
         """Make the chooser."""
         self.frame.gui.add_html(TOOLS)
         self._chooser: Any = self.frame.gui.add_dropdown(
-            SPECTRUM_OF, tuple(TITLES.values()), initial_value=TITLES[FIRST],
+            SPECTRUM_OF, tuple(RECORDED.values()), initial_value=RECORDED[FIRST],
             hint=Text("Amplitude over period: a sine shows as a peak of its amplitude."),
         )  # fmt: skip
         self._chooser.on_update(if_user(self._choose))
@@ -44,7 +44,7 @@ class SpectrumView(PlotlyView):
         """Show the display's quantity, and those of a ship's own INS where the run is on one."""
         run, key = self.session.run, self.session.display.spectrum
         own = tuple(TO_LOG_TITLES.values()) if run is not None and run.against is not None else ()
-        options = (*TITLES.values(), *own)
+        options = (*RECORDED.values(), *own)
         if tuple(self._chooser.options) != options:
             self._chooser.options = options
         self._chooser.value = _WORDS[drawn_key(run, key)]

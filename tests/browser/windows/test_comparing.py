@@ -47,7 +47,7 @@ def test_a_pin_is_called_by_what_differs_and_is_of_the_edited_method(pinned: Ben
     # only the method that was edited is laid over: the others are as they were
     wait_for_names(pinned, f"names.length === 4 && names[3] === '{name}: complementary'")
     assert read(pinned, pinned.page.locator(".sb-legend .sb-entry", has_text=name))
-    data = next(chart["data"] for chart in pinned.curves() if chart["label"].startswith("δVE"))
+    data = next(chart["data"] for chart in pinned.curves() if chart["label"].startswith("|δV|"))
     assert len(data) == 5 and data[3] != pytest.approx(data[4], rel=1e-3)
     line = pinned.line("/track/pinned0")
     assert line and line != pytest.approx(pinned.line("/track/method2"), abs=1e-3), "on the map too"
