@@ -27,11 +27,11 @@ _FIRST_SEED = SEARCHED + 10_000
 _SEEDS, _FEWEST_SEEDS = 64, 8
 _SPREAD = 16
 """Settings by the covariance, a parameter."""
-_CHOSEN, _AS_SPREAD = 6, 12
+_CHOSEN, _AS_SPREAD = 8, 24
 """Settings of the first generation: the best of these, and the first ones as they are spread."""
-_WIDTHS = 0.15, 0.08, 0.04
+_WIDTHS = 0.25, 0.15, 0.08, 0.04
 """Standard deviation of the steps of each further generation, as a part of the range."""
-_PARENTS, _CHILDREN = 4, 3
+_PARENTS, _CHILDREN = 5, 4
 _APART = 0.12
 """Distance, as a part of the ranges, between the parents of a generation: several hills are climbed."""
 _STEPS, _LONGEST_STEP_S = 8640, 10.0
