@@ -18,6 +18,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.adapt:AdaptQuestion",
     "navcore.questions.design:DesignQuestion",
     "navcore.questions.worst:WorstQuestion",
+    "navcore.questions.detect:DetectQuestion",
     "navcore.questions.suffice:SufficeQuestion",
     "navcore.questions.fit:FitQuestion",
     "navcore.questions.report:ReportQuestion",
