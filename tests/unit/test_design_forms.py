@@ -13,6 +13,7 @@ from navcore.design.shares import shares_of
 from navcore.design.ship import Ship
 from navcore.design.tuned_designs import INTERVALS, NO_SPREAD, Spread, _best_of, ratio_at, tuned_methods
 from navcore.engine.ensemble import outcomes
+from navcore.networks.unity2 import Unity2Network
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
@@ -138,8 +139,9 @@ def test_a_parameter_that_is_not_given_is_searched_from_where_it_follows() -> No
     form = forms_of(Scenario.parse(SHIP), "unity2")[0]
     space = _Space(form)
     begun = space.method(space.place(form.method))
-    assert begun is not None and form.method.network.zeta2 is None
-    assert begun.network.zeta2 == pytest.approx(0.7)
+    assert begun is not None
+    assert isinstance(form.method.network, Unity2Network) and form.method.network.zeta2 is None
+    assert isinstance(begun.network, Unity2Network) and begun.network.zeta2 == pytest.approx(0.7)
 
 
 def test_of_settings_with_about_the_same_share_the_safer_one_is_taken() -> None:
