@@ -167,8 +167,8 @@ def run_of(lesson: str, index: int) -> Run:
     return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
 
 
-def test_there_are_the_ten_lessons_with_questions_and_actions() -> None:
-    assert [int(lesson.id.partition("-")[0]) for lesson in LESSONS] == [*range(1, 11)]
+def test_there_are_the_eleven_lessons_with_questions_and_actions() -> None:
+    assert [int(lesson.id.partition("-")[0]) for lesson in LESSONS] == [*range(1, 12)]
     for lesson in LESSONS:
         assert sum(step.question is not None for step in lesson.steps) >= 3, lesson.id
         assert all(step.action is not None for step in lesson.steps), lesson.id

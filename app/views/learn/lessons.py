@@ -37,7 +37,7 @@ from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.numbers import read_number, read_whole
 from navcore.foundation.text import Text
-from navcore.scenario.file import apply_overrides, load
+from navcore.scenario.file import apply_overrides, load, resolve_files
 from navcore.scenario.model import Scenario
 from schuler_bench.views.learn.names import named
 
@@ -139,6 +139,8 @@ class Lesson(_Part):
         the same as a table.
     steps : tuple of Step
         In order.
+    folder : str
+        Of the file: what a scenario of its own reads is named from there.
     """
 
     id: str
@@ -147,6 +149,7 @@ class Lesson(_Part):
     preset: str = ""
     scenario: dict[str, Any] = Field(default_factory=dict)
     steps: tuple[Step, ...]
+    folder: str = ""
 
     def scenario_of(self, step: int) -> Scenario:
         """Scenario in which a step plays: that of the nearest action up to it; raises `InputError`."""
@@ -156,6 +159,8 @@ class Lesson(_Part):
             return load(self.preset, overrides)
         data = deepcopy(self.scenario)
         apply_overrides(data, overrides)
+        if self.folder:
+            resolve_files(data, Path(self.folder))
         return Scenario.parse(data, self.id)
 
 
@@ -175,13 +180,15 @@ def lessons() -> tuple[Lesson, ...]:
     own = os.environ.get(OWN)
     more = sorted(Path(own).glob("*.md")) if own else []
     return tuple(
-        read_lesson(file.stem if file in files else file.name, file.read_text(encoding="utf-8"))
+        read_lesson(
+            file.stem if file in files else file.name, file.read_text(encoding="utf-8"), str(file.parent)
+        )
         for file in (*files, *more)
     )
 
 
-def read_lesson(id: str, text: str) -> Lesson:
-    """Read a lesson from its file's text.
+def read_lesson(id: str, text: str, folder: str = "") -> Lesson:
+    """Read a lesson from its file's text; names of recordings in it are relative to a folder.
 
     Raises
     ------
@@ -205,7 +212,7 @@ def read_lesson(id: str, text: str) -> Lesson:
     ends = [*(heading.start() for heading in headings[1:]), len(text)]
     steps = [_step(id, text, heading, end) for heading, end in zip(headings, ends, strict=True)]
     front = _toml(id, 2, match.group(1))
-    return _checked(id, 2, lambda: Lesson(id=id, steps=tuple(steps), **front))
+    return _checked(id, 2, lambda: Lesson(id=id, steps=tuple(steps), folder=folder, **front))
 
 
 def at_line(id: str, line: int) -> str:

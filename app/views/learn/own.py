@@ -54,7 +54,7 @@ def use_lessons(folder: Path) -> tuple[Lesson, ...]:
     found, faults = list[Lesson](), list[Fault]()
     for file in files:
         try:
-            lesson = read_lesson(file.name, _text(file))
+            lesson = read_lesson(file.name, _text(file), str(file.parent))
         except InputError as error:
             faults += error.faults
             continue
