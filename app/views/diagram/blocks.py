@@ -38,6 +38,8 @@ _LINE, _BRANCH = 84, 166
 """Height of the main line, and of the damping below it."""
 _COPIES, _COPY = 214, 82
 """Line of the first copy of a navigation, and from one to the next."""
+_SHEET = 34
+"""From one copy of a cascade to the next, px."""
 _BELOW = 30
 """Room below the last copy."""
 _LETTERS = 21
@@ -187,22 +189,34 @@ def _copies(scenario: Scenario, method: Method) -> Iterator[Part]:
     site = scenario.site.site()
     copies = copies_of(method.settings, scenario.omega_s, site.lat, site.height, scenario.earth)
     if copies.level == copies.slow:
-        count, longest = len(copies.ahead_s) - 1, ahead_words(copies.ahead_s[-1])
-        if count == 1:
-            lines = (Text("copy C, begun {ahead} ahead", ahead=longest), "e^(sT_s/2)")
+        if len(copies.ahead_s) == 2:
+            lines = (Text("copy C, begun {ahead} ahead", ahead=ahead_words(copies.ahead_s[1])), "e^(sT_s/2)")
             yield from _copy(_COPIES, lines, ("½ (B + C)",), WIDTH - 88.0, WIDTH - 48.0)
             return
-        lines = (
-            Text("{count} copies, up to {ahead} ahead", count=count, ahead=longest),
-            Text("each pair half a period apart"),
-        )
-        yield from _copy(_COPIES, lines, (Text("mean"), "1/n Σ"), WIDTH - 88.0, WIDTH - 48.0)
+        yield from _cascade(tuple(ahead_words(ahead) for ahead in copies.ahead_s[1:]))
         return
     _, half, day = (ahead_words(ahead) for ahead in copies.ahead_s)
     lines = (Text("copy C, begun {ahead} ahead", ahead=half), "e^(sT_s/2)")
     yield from _copy(_COPIES, lines, ("½ (B + C)", Text("velocity, tilt")), 626.0, 716.0)
     lines = (Text("copy D, begun {ahead} ahead", ahead=day), "e^(sT_e/2)")
     yield from _copy(_COPIES + _COPY, lines, ("½ (B + D)", Text("position, heading")), 642.0, WIDTH - 20.0)
+
+
+def _cascade(ahead: tuple[str, ...]) -> Iterator[Part]:
+    """Each copy of a cascade, and the mean of all with the main navigation."""
+    bus, left = 560.0, WIDTH - 88.0
+    lowest = _COPIES + _SHEET * (len(ahead) - 1)
+    for place, lead in enumerate(ahead):
+        y = _COPIES + _SHEET * place
+        words = Text("copy {letter}, begun {ahead} ahead", letter=chr(ord("C") + place), ahead=lead)
+        yield Block(264, y - 13, 236, 26, (words,), METHOD, own=True)
+        yield Line(((500, y), (bus, y)), own=True)
+    if len(ahead) > 1:
+        yield Line(((bus, lowest), (bus, _COPIES)), own=True)
+    yield Line(((bus, _COPIES), (left, _COPIES)), own=True)
+    yield Word(382, lowest + 31, Text("the same navigation on forecast sensors"), muted=True)
+    yield Block(left, _COPIES - 24, 80, 48, (Text("mean"), f"1/{len(ahead) + 1} Σ"), METHOD, own=True)
+    yield Line(((WIDTH - 48.0, _LINE), (WIDTH - 48.0, _COPIES - 24)), own=True)
 
 
 def _copy(
