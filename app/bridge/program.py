@@ -59,16 +59,16 @@ MENDS = (
         "n=window.schuler.send,r=b.useMemo(()=>({folderDepth:0",
     ),
     Mend(
-        "a plot over time is not made twice",
+        "a plot over time is not made twice, and fills its large window",
         "onExpand:n}),(0,Y.jsx)(pA,{opened:t,onClose:r,size:`xl`,children:(0,Y.jsx)(I0,{...e})})]})",
-        "onExpand:n}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:t,onClose:r,size:`xl`,children:(0,Y.jsx)(I0,{...e})}),"
-        "[t,t&&e])]})",
+        "onExpand:n}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:t,onClose:r,size:`96vw`,children:(0,Y.jsx)(I0,{...e,"
+        "props:{...e.props,height:Math.round(.78*innerHeight)}})}),[t,t&&e])]})",
     ),
     Mend(
-        "a plotly figure is not made twice",
+        "a plotly figure is not made twice, and fills its large window",
         "onExpand:r}),(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,aspectRatio:t})})",
-        "onExpand:r}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,"
-        "aspectRatio:t})}),[n,n&&e,t])",
+        "onExpand:r}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:n,onClose:i,size:`96vw`,children:(0,Y.jsx)(SX,{jsonStr:e,"
+        "aspectRatio:.78*innerHeight/(.96*innerWidth-40)})}),[n,n&&e,t])",
     ),
     Mend(
         "a plotly figure is drawn once its width is known",

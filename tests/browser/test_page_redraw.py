@@ -273,6 +273,8 @@ def test_a_plot_in_its_large_window_follows_the_run(moving: Bench) -> None:
     plot.hover(position={"x": 30, "y": 30})
     plot.locator("button").click()
     page.wait_for_selector(_LARGE)
+    small, large = (page.locator(each).first.bounding_box() for each in (".uplot canvas", _LARGE))
+    assert small and large and all(large[side] > 1.5 * small[side] for side in ("width", "height"))
     before = page.evaluate(f"document.querySelector('{_LARGE}').toDataURL()")
     session.change(edits.with_value(session.scenario, ("method", 2, "network", "zeta"), 1.2), None)
     changed = f"before => document.querySelector('{_LARGE}').toDataURL() !== before"
