@@ -47,6 +47,7 @@ from schuler_bench.views.learn.lessons import (
     read_lesson,
     right_choice,
     to_html,
+    without,
 )
 from schuler_bench.views.learn.names import Named, named
 from schuler_bench.views.learn.view import spec_at
@@ -343,3 +344,11 @@ def test_a_lesson_may_play_in_a_preset() -> None:
     assert (step.title, step.text) == ("First", "Text with $x$ and {{schuler.period}}.")
     assert isinstance(lesson.scenario_of(0), Scenario)
     assert lesson.scenario_of(0).method[1].name == "classic2"
+
+
+def test_what_a_lesson_sets_of_the_display_goes_with_it() -> None:
+    """Lesson 1's minutes stayed on the axes of lesson 10."""
+    first = lessons()[0]
+    set_by_it = Display().with_(**{k: v for s in first.steps if s.action for k, v in s.action.shown.items()})
+    assert set_by_it.time == "min" and set_by_it.with_(**without(first)) == Display()
+    assert without(None) == {}

@@ -39,6 +39,7 @@ from navcore.foundation.numbers import read_number, read_whole
 from navcore.foundation.text import Text
 from navcore.scenario.file import apply_overrides, load, resolve_files
 from navcore.scenario.model import Scenario
+from schuler_bench.session.display import Display
 from schuler_bench.views.learn.names import named
 
 _FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
@@ -350,6 +351,14 @@ def right_choice(question: Question, run: Run) -> int:
     if len(right) != 1:
         raise KeyError(f"{question.ask}: {len(right)} choices are right")
     return right[0]
+
+
+def without(lesson: Lesson | None) -> dict[str, Any]:
+    """Fields of the display that a lesson sets, as they are without it: what it sets goes with it."""
+    steps = () if lesson is None else lesson.steps
+    named = {name for step in steps if step.action is not None for name in step.action.shown}
+    plain = Display()
+    return {name: getattr(plain, name) for name in sorted(named)}
 
 
 def is_right(question: Question, given: str, run: Run) -> bool:

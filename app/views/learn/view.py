@@ -18,7 +18,7 @@ from schuler_bench.editing.form import FieldSpec, Path
 from schuler_bench.session.shown import Shown
 from schuler_bench.shell.control import Control, Section
 from schuler_bench.shell.view import Frame, Tab, View
-from schuler_bench.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html
+from schuler_bench.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html, without
 
 COMMAND = "lesson"
 """Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
@@ -103,9 +103,10 @@ class LearnView(View):
 
     def _go(self, lesson: int | None, step: int) -> None:
         if lesson is None:
-            self.frame.show(lesson="", lesson_step=0)
+            self.frame.show(**without(self._current()), lesson="", lesson_step=0)
         elif lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps):
-            self.frame.show(lesson=lessons()[lesson].id, lesson_step=step)
+            left = {} if lesson == self._lesson else without(self._current())
+            self.frame.show(**left, lesson=lessons()[lesson].id, lesson_step=step)
 
     def _show_me(self) -> None:
         lesson, action = self._current(), self._action()
