@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from navcore.foundation.notation import unit_sign
+from navcore.foundation.notation import symbol, unit_sign
 from navcore.foundation.parameters import allowed_range, bounds_of, element_of, extra_of
 from navcore.foundation.text import Text
 
@@ -306,6 +306,34 @@ def full_label(name: str, info: FieldInfo, prefix: str = "", part: str = "") -> 
     sign = unit_sign(extra.get("unit", ""))
     unit = Text("({sign})", sign=sign) if sign else ""
     return Text.joined(" ", (word for word in (*words, unit) if word))
+
+
+_OF_BLOCKS = {"reference": Text("log"), "initial_error": Text("initial")}
+"""What the labels of a block's fields leave out, since the page shows them in a tab of that name."""
+
+
+def field_words(model: BaseModel, path: str) -> tuple[str, str]:
+    """Name of a field in words, or its symbol, and its unit as the model names it.
+
+    Parameters
+    ----------
+    model : BaseModel
+        Parameter model, such as a scenario or a method.
+    path : str
+        Dotted path in it.
+    """
+    *blocks, name = path.split(".")
+    at: Any = model
+    for step in blocks:
+        at = at[int(step)] if step.isdigit() and isinstance(at, tuple) else getattr(at, step, None)
+    info = type(at).model_fields.get(name) if isinstance(at, BaseModel) else None
+    if info is None or symbol(name) != name.replace("_", " "):
+        return symbol(name), ""
+    extra, label = extra_of(info), plain_label(name, info)
+    if (of := _OF_BLOCKS.get(blocks[0] if blocks else "")) and of not in label:
+        label = Text("{of} {label}", of=of, label=label)
+    unit = extra.get("unit", "")
+    return label, "" if unit == "1" else unit
 
 
 def plain_label(name: str, info: FieldInfo) -> str:

@@ -12,11 +12,12 @@ from pydantic import BaseModel
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.spans import span_of
 from navcore.engine.verification import Verification
-from navcore.foundation.notation import symbol
+from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.quantities import NAMES
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.form import field_words
 from schuler_bench.jobs.asking import Asker
 from schuler_bench.plots.envelope import Envelope
 from schuler_bench.session.display import Display
@@ -209,26 +210,26 @@ def _differing(old: BaseModel, new: BaseModel) -> list[str]:
     # Another kind of block has other fields: they say nothing that its name does not.
     named = {kind.rpartition(".")[0] for kind in kinds}
     return [
-        _words(path, value)
+        _words(path, value, old)
         for path, value in values.items()
         if path in kinds or path.rpartition(".")[0] not in named
     ]
 
 
-def _words(path: str, value: Any) -> str:
+def _words(path: str, value: Any, model: BaseModel) -> str:
+    """Say what a field of a model, by its path, is set to: ``ζ 0.5``, ``log bias 0.3, 0 m/s``."""
     block, _, name = path.rpartition(".")
-    if name.isdigit():
-        name = Text("{block} {name}", block=block.rpartition(".")[2], name=name)
     if name in _KINDS:
         return str(value)
-    name = symbol(name)
+    if name.isdigit():
+        name, unit = Text("{block} {name}", block=block.rpartition(".")[2], name=name), ""
+    else:
+        name, unit = field_words(model, path)
     if value is None:
         return Text("no {name}", name=name)
-    return (
-        Text("{name} {value:g}", name=name, value=value)
-        if isinstance(value, float)
-        else Text("{name} {value}", name=name, value=value)
-    )
+    numbers = value if isinstance(value, list) else [value]
+    told = ", ".join(f"{one:g}" if isinstance(one, float) else str(one) for one in numbers)
+    return Text("{name} {value}", name=name, value=with_unit(told, unit) if unit else told)
 
 
 # ------------------------------------------------------------ the part that is measured

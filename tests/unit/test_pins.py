@@ -10,7 +10,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from schuler_bench.jobs.rows import MOST_ROWS, few_rows
 from schuler_bench.session.pins import COLORS, LONGEST_NAME, MOST_PINS, Pins
-from schuler_bench.session.shown import laid
+from schuler_bench.session.shown import difference, laid
 from tests.unit.figures_runs import run_of, static_run
 
 
@@ -107,3 +107,12 @@ def test_a_pin_of_another_scenario_is_not_drawn_over_its_curves(pins: Pins) -> N
     pin, scenario = pins.add(static_run(), "preset"), static_run().scenario
     assert [each.id for each in laid(pins.all, scenario)] == [pin.id]
     assert laid(pins.all, scenario.model_copy(update={"title": "another"})) == ()
+
+
+def test_a_pin_is_named_in_words_with_units(pins: Pins) -> None:
+    """A pin was called "bias mps [0.0, 0.0]"."""
+    pin, scenario = pins.add(static_run(), "preset"), static_run().scenario
+    other = scenario.model_copy(
+        update={"reference": scenario.reference.model_copy(update={"bias_mps": (0.0, 0.0)})}
+    )
+    assert difference(pin, other) == "log bias 0.3, 0.1 m/s"

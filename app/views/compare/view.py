@@ -237,7 +237,8 @@ class CompareView(PictureView[str]):
         # What the user is typing is theirs: texts change only with the pin.
         if pin.id != self._edited:
             self._edited = pin.id
-            self._name.value, self._note.value = pin.name, pin.note
+            shown = next(one.name for one in pins if one.id == pin.id)
+            self._name.value, self._note.value = shown, pin.note
         self._color.value, self._shown.value = pin.color, pin.shown
 
     @property
