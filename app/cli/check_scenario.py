@@ -13,6 +13,7 @@ from navcore.foundation.errors import InputError
 from navcore.scenario.file import load, scenario_hash
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.provenance import source_of
 
 if TYPE_CHECKING:
     from navcore.engine.strapdown_environment import StrapdownEnvironment
@@ -75,7 +76,7 @@ def _warnings(scenario: Scenario, method: Method, inputs: Environment | Strapdow
 def _details(scenario: Scenario) -> dict[str, Any]:
     return {
         "title": scenario.title,
-        "source": scenario.source,
+        "source": source_of(scenario),
         "fidelity": scenario.run.fidelity,
         "duration_h": scenario.run.duration_h,
         "steps": scenario.steps,
@@ -108,7 +109,7 @@ def _steps(scenario: Scenario) -> str:
 
 def _text(scenario: Scenario) -> list[str]:
     run, site = scenario.run, scenario.site
-    head = ", ".join(part for part in (scenario.title, scenario.source) if part)
+    head = ", ".join(part for part in (scenario.title, source_of(scenario)) if part)
     lines = [f"  {head}"] if head else []
     lines += [
         f"  {run.fidelity}, {run.duration_h:g} h, {_steps(scenario)}, {run.earth}, "

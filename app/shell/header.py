@@ -9,6 +9,7 @@ from navcore.engine.run import ENDINGS, Run
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Scenario
+from navcore.scenario.provenance import source_of
 from schuler_bench.jobs import kernels
 from schuler_bench.plots import style
 from schuler_bench.plots.units import duration
@@ -85,7 +86,7 @@ class HeaderPanel:
         self._scenario.value = origin
         lines = [
             Text("<b>{title:html}</b>", title=scenario.title) if scenario.title else "",
-            quoted(scenario.source),
+            quoted(source_of(scenario)),
         ]
         tab = self._focus.get(scenario.view.focus, "")
         self._about.content = Text(

@@ -78,10 +78,12 @@ class Ran(Answer):
 
     def rows(self) -> Iterator[Table | str]:
         """Give what was run, the loops, RMS, largest and last errors of every method, verdicts, warnings."""
+        from navcore.scenario.provenance import source_of
+
         run, settings = self.run, self.run.scenario.run
         on_ins = self.run.scenario.on_ins and len(run.truth)
         lat_deg = math.degrees(float(run.truth[0, 0])) if on_ins else run.scenario.site.lat_deg
-        if head := ", ".join(part for part in (run.scenario.title, run.scenario.source) if part):
+        if head := ", ".join(part for part in (run.scenario.title, source_of(run.scenario)) if part):
             yield head
         yield Text(
             "{fidelity}, {hours:g} h, {earth}, {lat:g} {side}, seed {seed}; statistics over {steps}",

@@ -12,6 +12,7 @@ from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.version import __version__
 from navcore.scenario.file import load, presets, to_toml
+from navcore.scenario.provenance import source_of
 from schuler_bench.bridge.texts import figure_said, language_of, text_said
 from schuler_bench.editing.edits import files_of
 from schuler_bench.plots import table
@@ -256,7 +257,7 @@ def command(session: Session) -> str:
 
 def _about(session: Session) -> str:
     scenario = session.now.run.scenario
-    source = Text("<p>{source:html}</p>", source=scenario.source) if scenario.source else ""
+    source = Text("<p>{source:html}</p>", source=source_of(scenario)) if scenario.source else ""
     lines = {
         Text("Scenario"): quoted(session.origin),
         Text("Duration"): f"{scenario.run.duration_h:g} h",

@@ -9,6 +9,7 @@ from navcore.questions.report import Case, Told, matrix_table
 from navcore.questions.run import Ran
 from navcore.scenario.file import scenario_hash, to_toml
 from navcore.scenario.method import Method
+from navcore.scenario.provenance import source_of
 from navcore.scenario.stochastic import drawn_as_zero
 from schuler_bench.plots import style
 from schuler_bench.plots.limits import requirement_words
@@ -46,7 +47,7 @@ def _about(told: Told) -> str:
     scenario = told.scenario
     lines = {
         Text("Question"): quoted(_QUESTION),
-        Text("Scenario"): quoted(scenario.source or scenario.title or "-"),
+        Text("Scenario"): quoted(source_of(scenario) or scenario.title or "-"),
         "SHA-256": Text("<code>{digest}</code>", digest=scenario_hash(scenario)),
         Text("Program"): Text("Schuler Bench {version}", version=__version__),
         Text("Seeds"): _seeds(told),
