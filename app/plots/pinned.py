@@ -7,7 +7,7 @@ from typing import Protocol
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from schuler_bench.plots.plotly_data import PlotlyFigure
-from schuler_bench.plots.units import Unit, number
+from schuler_bench.plots.units import Unit, number, relative
 from schuler_bench.plots.uplot import Dash
 
 PIN_WIDTH = 1.0
@@ -137,4 +137,4 @@ def difference_text(new: float, old: float, unit: Unit) -> str:
     signed = value if value.startswith("-") or new == old else f"+{value}"
     if not old:
         return signed
-    return f"{signed} ({100.0 * (new - old) / abs(old):+.1f} %)" if new != old else f"{signed} (0 %)"
+    return f"{signed} ({relative(new, old, 1) or '0 %'})"

@@ -150,6 +150,24 @@ def rounded(value: float, digits: int = 3) -> str:
     return f"{float(text):.{max(0, digits - 1 - math.floor(math.log10(size)))}f}"
 
 
+_AS_FACTOR = 10.0
+"""A change from here on is a factor: nobody reads "+97224 %"."""
+
+
+def relative(new: float, old: float, digits: int = 0) -> str:
+    """Change of a number against an old one that is not 0, in per cent or as a factor; "" where none is left.
+
+    Examples
+    --------
+    >>> relative(1.2, 1.0), relative(0.5, 0.4444, 1), relative(973.2, 1.0), relative(1.0001, 1.0)
+    ('+20 %', '+12.5 %', '× 973', '')
+    """
+    if new / old >= _AS_FACTOR:
+        return f"× {number(new / old, 3)}"
+    part = round(100.0 * (new - old) / abs(old), digits)
+    return f"{part:+.{digits}f} %" if part else ""
+
+
 def settling(seconds: float | None) -> str:
     """Time to settle, in minutes wherever the page tells it; "never" for None or inf.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from navcore.engine.measures import measure
 from navcore.engine.run import ENDINGS, MethodRun, Run
@@ -14,7 +14,16 @@ from navcore.scenario.own_ins import AS_RECORDED
 from navcore.scenario.stochastic import drawn_as_zero
 from schuler_bench.plots import style
 from schuler_bench.plots.legend import COMMAND, hint, word
-from schuler_bench.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, wanted_unit
+from schuler_bench.plots.units import (
+    Unit,
+    angle_unit,
+    length_unit,
+    relative,
+    rounded,
+    settling,
+    speed_unit,
+    wanted_unit,
+)
 from schuler_bench.session.display import Display
 from schuler_bench.session.requirements import asked
 from schuler_bench.session.shown import Shown, window_of
@@ -24,12 +33,15 @@ EDIT = "edit-method"
 """Name of the command of a card, with the place of its method."""
 _SETTLING = "settling_s"
 _SHOWN = {
-    "tilt_max_arcsec": (Text("tilt"), "angle", angle_unit),
-    "velocity_rms_mps": (Text("velocity"), "speed", speed_unit),
-    "position_max_m": (Text("position"), "length", length_unit),
+    "tilt_max_arcsec": (Text("max tilt"), "angle", angle_unit),
+    "velocity_max_mps": (Text("max velocity"), "speed", speed_unit),
+    "position_max_m": (Text("max position"), "length", length_unit),
     _SETTLING: (Text("settles"), "", None),
 }
-"""Quantity -> its short name, and the choice of the display and the function that give its unit."""
+"""Quantity -> its short name, and the choice of the display and the function that give its unit.
+
+Of all errors the same statistic, the largest length of the run.
+"""
 
 
 class StripView(View):
@@ -84,12 +96,13 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
     run, display = found.run, found.display
     part = window_of(run, display).run
     limits = asked(run, run.scenario.requirement)
+    units = _units(part.lines, display)
     recorded = None if part.against is None else part.against.recorded
     if recorded is not None:
-        yield _recorded_card(recorded, display)
+        yield _recorded_card(recorded, display, units)
     for place, method in enumerate(part.methods):
         name, state = method.method.name, display.state_of(method.method.name)
-        facts = [*_numbers(method, _before(found, name), display)]
+        facts = [*_numbers(method, _before(found, name), units)]
         if limits:  # the verdict first: where a card has no room for all, the last ones are left out
             words = [(verdict.words[place], verdict.quantity.label) for verdict in limits]
             facts.insert(0, _met(words, drawn_as_zero(run.scenario)))
@@ -114,7 +127,7 @@ def _cards(found: Shown, selected: int) -> Iterator[str]:
         )
 
 
-def _recorded_card(method: MethodRun, display: Display) -> str:
+def _recorded_card(method: MethodRun, display: Display, units: Mapping[str, Unit]) -> str:
     """Card of an INS as it was recorded: there is nothing of it to edit."""
     state = display.state_of(method.method.name)
     said = Text("<i>{words}</i>", words=word(state)) if word(state) else ""
@@ -130,7 +143,7 @@ def _recorded_card(method: MethodRun, display: Display) -> str:
         shown=AS_RECORDED,
         hint=hint(state),
         said=said,
-        facts=Text.joined("", _numbers(method, None, display)),
+        facts=Text.joined("", _numbers(method, None, units)),
     )
 
 
@@ -150,14 +163,25 @@ def _before(found: Shown, name: str) -> MethodRun | None:
     return next((method for method in methods if method.method.name == name), None)
 
 
-def _numbers(method: MethodRun, before: MethodRun | None, display: Display) -> Iterator[str]:
-    """Each quantity with its unit, and by how many per cent it differs from the pinned run's."""
-    for key, (label, choice, suitable) in _SHOWN.items():
+def _units(methods: Sequence[MethodRun], display: Display) -> dict[str, Unit]:
+    """Unit of each quantity, the same on all cards: what suits the largest finite value."""
+    units: dict[str, Unit] = {}
+    for key, (_, choice, suitable) in _SHOWN.items():
+        if suitable is not None:
+            values = (measure(method, key) for method in methods if known(method, key))
+            peak = max((value for value in values if math.isfinite(value)), default=0.0)
+            units[key] = wanted_unit(getattr(display, choice), peak, suitable)
+    return units
+
+
+def _numbers(method: MethodRun, before: MethodRun | None, units: Mapping[str, Unit]) -> Iterator[str]:
+    """Each quantity with its unit, and by how much it differs from the pinned run's."""
+    for key, (label, _, suitable) in _SHOWN.items():
         value = measure(method, key)
         if suitable is None:
             text = settling(value) if method.loop.stable else Text("unstable")
         else:
-            unit = wanted_unit(getattr(display, choice), value, suitable)
+            unit = units[key]
             text = with_unit(rounded(value / unit.si), unit.name) if known(method, key) else "n/a"
         change = _change(value, before, key)
         words = {"label": QUANTITIES[key].label, "what": QUANTITIES[key].help, "change": change}
@@ -173,8 +197,7 @@ def _change(value: float, before: MethodRun | None, key: str) -> str:
     old = math.nan if before is None else measure(before, key)
     if not (math.isfinite(old) and math.isfinite(value) and old):
         return ""
-    part = round(100.0 * (value - old) / abs(old))
-    return f"{part:+d} %" if part else ""
+    return relative(value, old)
 
 
 def _met(found: list[tuple[str, str]], zero: tuple[str, ...]) -> str:
