@@ -1,5 +1,7 @@
 """A page to keep, send and print: it loads nothing, and its styles are its own."""
 
+import base64
+import hashlib
 from html import escape
 from pathlib import Path
 from string import Template
@@ -14,7 +16,7 @@ _FONT = f":root{{--sb-font:{FONT_FAMILY}}}"
 _CSS = _FONT + table.CSS + (_HERE / "paper.css").read_text(encoding="utf-8")
 
 
-def paper(language: str, title: str, body: str) -> str:
+def paper(language: str, title: str, body: str, script: str = "") -> str:
     """HTML of a page.
 
     Parameters
@@ -23,8 +25,18 @@ def paper(language: str, title: str, body: str) -> str:
         As a browser tells it.
     title, body : str
         HTML.
+    script : str
+        The only script that may run, with WebAssembly; "": none may.
     """
-    return _PAGE.substitute(language=escape(language), title=title, style=_CSS, body=body)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return _PAGE.substitute(
+        language=escape(language),
+        title=title,
+        style=_CSS,
+        body=body,
+        allowed=f"; script-src 'sha256-{digest}' 'wasm-unsafe-eval'" if script else "",
+        script=f"<script>{script}</script>" if script else "",
+    )
 
 
 def section(title: str, *content: str) -> str:

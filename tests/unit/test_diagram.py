@@ -246,3 +246,12 @@ def test_the_forecast_stands_beneath_the_loop_of_averaging() -> None:
 def test_a_record_without_motion_is_used_as_a_whole() -> None:
     run = run_of("zhao-sensors", {"damping": "averaging"})
     assert "all 600 s used" in beneath(run, 0)
+
+
+def test_a_network_with_two_outputs_shows_both() -> None:
+    """`optimal` with velocity feedback has G(s) in the place of a gain; it stopped diagram and report."""
+    method = {"damping": "external", "network": {"id": "optimal", "realisation": "feedback"}}
+    figures = {"gyro_bias_std_dph": 0.01, "accel_bias_std_ug": 20.0, "gyro_arw_dpsh": 0.003}
+    found = diagram(scenario(method, reference={"kind": "log", "noise_mps": 0.1}, imu=figures), 0)
+    lines = [block.lines for block in blocks_of(found)]
+    assert ("G(s)",) in lines and any(line[:2] == ("1 − H(s)", "optimal") for line in lines)

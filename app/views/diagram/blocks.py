@@ -124,15 +124,18 @@ def _damping(scenario: Scenario, method: Method, state: State) -> Iterator[Part]
     log = _log(scenario, y) if method.kind.uses_log else None
     yield from _compared(y, log, "V_r")
     network = method.kind.network(method)
-    form = method.kind.acting(network.transfer(scenario.omega_s)).realisation
+    acting = method.kind.acting(network.transfer(scenario.omega_s))
     values = _values(network, scenario.omega_s, state.coefficient)
     lines = ("1 − H(s)", network.id, *values)
-    if form != "network":
-        gains = network.values(scenario.omega_s)
-        k1, *others = (_value(network, name, gains.get(name)) for name in ("k1", "k2", "k3"))
-        lines = ("−(K₂ + K₃/s)", network.id, *values, *_pairs(others))
+    if acting.realisation != "network":
+        fed_back = ("G(s)",)  # the second output of a network
+        if acting.feedback_p is None:
+            gains = network.values(scenario.omega_s)
+            k1, *others = (_value(network, name, gains.get(name)) for name in ("k1", "k2", "k3"))
+            lines = ("−(K₂ + K₃/s)", network.id, *values, *_pairs(others))
+            fed_back = tuple(k1.split(" ")[:2])
         yield Line(((246, y), (246, y - 36), (214, y - 36)), own=True)
-        yield Block(154, y - 53, 60, 34, tuple(k1.split(" ")[:2]), METHOD, own=True)
+        yield Block(154, y - 53, 60, 34, fed_back, METHOD, own=True)
         yield Line(((154, y - 36), (140, y - 36), (140, main + 9)), own=True)
     height = 22.0 + 15.0 * (len(lines) - 1)
     yield Block(264, y - 18, 136, height, lines, METHOD, own=True)

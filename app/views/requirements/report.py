@@ -17,15 +17,17 @@ from schuler_bench.plots.paper import paper, section
 from schuler_bench.session.uploads import with_plain_names
 from schuler_bench.views.diagram.blocks import State, diagram
 from schuler_bench.views.diagram.svg import diagram_svg
+from schuler_bench.views.requirements.report_moving import moving_section
 from schuler_bench.views.requirements.report_plots import error_svgs
 
 _QUESTION = Text("Which methods meet which limits, and what do the verdicts rest on?")
 
 
 def page(told: Told) -> str:
-    """Make the page: matrix, methods, budget, worst case, assumptions, plots and the scenario."""
+    """Make the page: matrix, methods, budget, worst case, assumptions, plots, sliders and the scenario."""
     scenario = told.scenario
     title = scenario.title or Text("Verification report")
+    moving, script = moving_section(scenario)
     parts = [
         Text("<header><h1>{title:html}</h1>{about}</header>", title=title, about=_about(told)),
         section(Text("Verification matrix"), *map(_matrix, (one for one in told.cases if one.rows))),
@@ -34,13 +36,14 @@ def page(told: Told) -> str:
         section(Text("Worst case of the log"), _answer(told.worst, told, Text("worst case"))),
         section(Text("What was assumed"), _assumed(told)),
         section(Text("Plots"), *(_figure(svg) for svg in error_svgs(told.cases[0].run))),
+        section(Text("Sliders"), moving),
         section(Text("Numbers of the run"), _table(Ran(told.cases[0].run, told.cases[0].shares).html())),
         section(
             Text("Scenario"),
             Text("<pre>{toml:html}</pre>", toml=to_toml(with_plain_names(scenario))),
         ),
     ]
-    return paper("en", quoted(title), str(Text.joined("", parts)))
+    return paper("en", quoted(title), str(Text.joined("", parts)), script)
 
 
 def _about(told: Told) -> str:
