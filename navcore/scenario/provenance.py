@@ -52,6 +52,8 @@ def _canonical(name: str) -> dict[str, Any]:
 
 def _differing(before: Any, after: Any) -> int:
     """Count the values in which two documents differ; a block that one of them lacks counts by its values."""
+    if before == after:
+        return 0
     if isinstance(before, dict) or isinstance(after, dict):
         old, new = (value if isinstance(value, dict) else {} for value in (before, after))
         return sum(_differing(old.get(key), new.get(key)) for key in {*old, *new} - {*_NAMING})
@@ -62,4 +64,4 @@ def _differing(before: Any, after: Any) -> int:
         longest = max(len(old), len(new))
         padded = ([*value, *[None] * (longest - len(value))] for value in (old, new))
         return sum(_differing(one, other) for one, other in zip(*padded, strict=True))
-    return int(before != after)
+    return 1
