@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from navcore.extending.plugins import load_plugins
 from navcore.foundation.errors import Fault, InputError
 from schuler_bench.http.access import access_rules
 from schuler_bench.http.address import authority, is_loopback, listen, parse_origins
@@ -240,6 +241,8 @@ def work() -> None:
     from schuler_bench.serve import open_dashboard
 
     begin_logging(to_file=False)
+    for fault in load_plugins():
+        _log.warning("%s", fault)
     bound_arenas()
     settings = Settings(**json.loads(sys.stdin.readline()))
     server, dashboard = open_dashboard(

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from navcore.engine.run import MethodRun, Run
     from navcore.engine.simulation import simulate
     from navcore.engine.verification import Verification, verify
+    from navcore.extending.register import register
     from navcore.foundation.errors import Fault, InputError
     from navcore.foundation.version import __version__
     from navcore.networks import parse_network
@@ -68,6 +69,7 @@ __all__ = [
     "pareto",
     "parse_network",
     "presets",
+    "register",
     "simulate",
     "tune",
     "verify",
@@ -91,19 +93,27 @@ _HOME = {
     "metrics": "engine.measures",
     "parse_network": "networks",
     "presets": "scenario.file",
+    "register": "extending.register",
     "simulate": "engine.simulation",
 }
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: the package itself must load in no time."""
+    if name.startswith("_") and name not in _HOME:
+        raise AttributeError(f"module 'navcore' has no attribute {name!r}")
+    from navcore.extending.plugins import load_plugins
+
+    for fault in load_plugins():
+        from warnings import warn
+
+        warn(str(fault), stacklevel=2)
     if name in _HOME:
         from importlib import import_module
 
         return getattr(import_module(f"navcore.{_HOME[name]}"), name)
-    if not name.startswith("_"):
-        from navcore.questions.functions import FUNCTIONS
+    from navcore.questions.functions import FUNCTIONS
 
-        if name in FUNCTIONS:
-            return FUNCTIONS[name]
+    if name in FUNCTIONS:
+        return FUNCTIONS[name]
     raise AttributeError(f"module 'navcore' has no attribute {name!r}")

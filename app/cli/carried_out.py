@@ -4,12 +4,15 @@ import errno
 import sys
 from collections.abc import Sequence
 
+from navcore.extending.plugins import load_plugins, name_plugin
 from navcore.foundation.cores import one_blas_thread
 from navcore.foundation.errors import InputError, StoppedError, UnstableError
 from schuler_bench.cli.codes import DONE, STOPPED, WRONG_INPUT
 from schuler_bench.cli.terminal import finish, prepare_streams, say
 
 _NO_THREAD = "can't start new thread"
+PLUGIN = "--plugin"
+"""Option of every command: a file that registers methods of the user's own."""
 _TOO_MANY = (errno.EAGAIN, errno.ENOMEM)
 
 
@@ -21,7 +24,8 @@ def carried_out(arguments: Sequence[str] | None) -> int:
         # Only now: a Ctrl-C while the commands are imported is no traceback either.
         from schuler_bench.cli.parse import parse
 
-        command = parse(sys.argv[1:] if arguments is None else arguments)
+        rest = with_plugins(sys.argv[1:] if arguments is None else arguments)
+        command = parse(rest)
         code = DONE if command is None else command.execute()
     except InputError as error:
         for fault in error.faults:
@@ -36,6 +40,25 @@ def carried_out(arguments: Sequence[str] | None) -> int:
         say(f"schuler: stopped: {reason}")
         code = STOPPED
     return code if finish() else WRONG_INPUT
+
+
+def with_plugins(arguments: Sequence[str]) -> list[str]:
+    """Load the packages and files that bring methods, and say what is wrong with them; return the rest.
+
+    ``--plugin FILE`` may stand anywhere on the command line, and more than once. A faulty one is left out.
+    """
+    rest, names, words = [], [], iter(arguments)
+    for word in words:
+        option, is_, name = word.partition("=")
+        if option == PLUGIN:
+            names.append(name if is_ else next(words, ""))
+        else:
+            rest.append(word)
+    for name in names:
+        name_plugin(name)
+    for fault in load_plugins():
+        say(str(fault))
+    return rest
 
 
 def refused_by_the_system(error: BaseException) -> str:

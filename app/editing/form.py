@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from navcore.foundation.notation import symbol, unit_sign
+from navcore.foundation.offered import when_changed
 from navcore.foundation.parameters import allowed_range, bounds_of, element_of, extra_of
 from navcore.foundation.text import Text
 
@@ -222,6 +223,9 @@ def _fields(model: type[BaseModel], path: Path, prefix: str) -> tuple[FieldSpec,
         if name not in _LEFT_OUT
         for spec in _field(name, info, (*path, name), prefix)
     )
+
+
+when_changed(_fields.cache_clear)
 
 
 def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> FieldSpec:

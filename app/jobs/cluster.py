@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from navcore.extending.baggage import packed
 from navcore.foundation.errors import Fault, InputError
 from schuler_bench.jobs.remote import NO_PROGRAM, Outcome, carry_out, misfit, program
 from schuler_bench.jobs.worker import ElsewhereLost
@@ -146,8 +147,9 @@ class Cluster:
             for number, item in enumerate(items):
                 report = (self._topic, name, number)
                 key = f"schuler-{name}-{number}"
+                called, (given,) = packed(function, item)
                 futures.append(
-                    client.submit(carry_out, ours, report, function, item, key=key, workers=workers)
+                    client.submit(carry_out, ours, report, called, given, key=key, workers=workers)
                 )
             reported = 0.0
             while not all(future.done() for future in futures):

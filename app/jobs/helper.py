@@ -20,6 +20,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
+from navcore.extending.baggage import packed
 from navcore.foundation.kernel_wait import Need, when_missing
 from navcore.foundation.progress import part_of
 from navcore.foundation.stage_cache import keep_only, working_for
@@ -172,7 +173,8 @@ def compute(
     helper, results = _helpers.take(), []
     try:
         for number, item in enumerate(items):
-            job = pickle.dumps((function, item, number + 1 == len(items)), protocol=pickle.HIGHEST_PROTOCOL)
+            called, (given,) = packed(function, item)
+            job = pickle.dumps((called, given, number + 1 == len(items)), protocol=pickle.HIGHEST_PROTOCOL)
             partly = part_of(progress, number / len(items), (number + 1) / len(items))
             outcome = helper.carry_out(job, partly, unwanted)
             if outcome is None or (len(items) > 1 and unwanted()):

@@ -27,6 +27,7 @@ _GUIDE = [
             "docs/import",
             "docs/networks",
             "docs/interface",
+            "docs/extending",
             "docs/scale",
             "docs/teaching",
         ],

@@ -75,9 +75,9 @@ def _other_realisations(default: Method) -> Iterator[Method]:
     info = type(default.network).model_fields.get("realisation")
     if info is None or not default.kind.referenced:
         return
-    offered = {choice for part in (info.annotation, *get_args(info.annotation)) for choice in get_args(part)}
+    choices = {choice for part in (info.annotation, *get_args(info.annotation)) for choice in get_args(part)}
     for realisation in _REALISATIONS:
-        if realisation in offered and getattr(default.network, "realisation", None) != realisation:
+        if realisation in choices and getattr(default.network, "realisation", None) != realisation:
             yield _with(default, {"network": {"id": default.network.id, "realisation": realisation}})
 
 
@@ -139,5 +139,6 @@ def _alike(one: Method, other: Method) -> bool:
     )
 
 
-IDS = tuple(name for name in NETWORKS if name not in ("none", "custom"))
-"""Networks that are offered: those with a design of their own."""
+def offered() -> tuple[str, ...]:
+    """Return the networks that are offered: those with a design of their own."""
+    return tuple(name for name in NETWORKS if name not in ("none", "custom"))

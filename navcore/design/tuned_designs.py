@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from navcore.design.forms import IDS, Form, forms_of
+from navcore.design.forms import Form, forms_of, offered
 from navcore.design.measures import Setting, measure, read_objective
 from navcore.design.search import REFUSED, Effort, Search
 from navcore.design.share_search import best_settings, coarse
@@ -95,7 +95,7 @@ def tuned_methods(
     progress: Callable[[float], None],
     cancelled: Callable[[], bool] | None,
     spread: Spread = NO_SPREAD,
-    ids: Sequence[str] = IDS,
+    ids: Sequence[str] | None = None,
 ) -> tuple[list[Method], list[tuple[str, str]]]:
     """Tune every network of the catalogue; also say for which there is no method, and why.
 
@@ -108,10 +108,11 @@ def tuned_methods(
     spread : Spread
         With one the share that counts is that of all its scenarios and of the scenario itself.
     ids : sequence of str
-        Networks that are tuned.
+        Networks that are tuned; by default all that are offered.
     """
     candidates: dict[str, list[Method]] = {}
     left_out: list[tuple[str, str]] = []
+    ids = offered() if ids is None else ids
     for k, name in enumerate(ids):
         if cancelled is not None and cancelled():
             left_out += [(other, Text("the search was stopped before it")) for other in ids[k:]]

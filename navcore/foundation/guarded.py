@@ -23,6 +23,8 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.kernel_wait import Need, when_missing
 
 Result = TypeVar("Result")
+Packing = Callable[..., tuple[Callable[..., Any], tuple[Any, ...]]]
+"""Gives a function and the arguments that stand for those it is given."""
 _LARGEST_ANSWER = 512 * 2**20
 _MOST_FAULTS = 50
 _AT_ONCE = 2
@@ -55,6 +57,7 @@ class _Guard:
     """Whether reading is guarded, and how many children may be at work."""
 
     limits: Limits | None = None
+    packed: Packing | None = None
     places: threading.BoundedSemaphore = threading.BoundedSemaphore(_AT_ONCE)  # noqa: RUF009
 
 
@@ -87,6 +90,11 @@ def warm() -> None:
         call("the helper", os.getpid)
 
 
+def take_along(packed: Packing) -> None:
+    """Have a function and its arguments packed together with what a child needs to read them."""
+    _guard.packed = packed
+
+
 def call(what: str, function: Callable[..., Result], *arguments: Any) -> Result:
     """Call a function of a module: in a child once `start` has been called, else here.
 
@@ -107,6 +115,8 @@ def call(what: str, function: Callable[..., Result], *arguments: Any) -> Result:
     limits = _guard.limits
     if limits is None:
         return function(*arguments)
+    if _guard.packed is not None:
+        function, arguments = _guard.packed(function, *arguments)
     with _guard.places:
         return _in_child(what, limits, function, arguments)
 

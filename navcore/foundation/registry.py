@@ -5,11 +5,15 @@ that holds any of them, the page's form, the guide, the JSON Schema and the cont
 that a new entry is a file with a class and a line in the registry.
 """
 
+import inspect
+import os
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic import BeforeValidator, Field
 
+from navcore.foundation.offered import offer
 from navcore.foundation.parameters import Parameters
 
 
@@ -34,7 +38,89 @@ def loaded(place: str) -> Any:
 _Entry = TypeVar("_Entry", bound=Parameters)
 
 
-def registry(base: type[_Entry], discriminator: str, *places: str) -> dict[str, type[_Entry]]:
+class Registry(dict[str, type[_Entry]]):
+    """Classes by name, in the order in which the page offers them; more can be added while the program runs.
+
+    Attributes
+    ----------
+    base : type
+        What every entry is a subclass of.
+    discriminator : str
+        The field that names an entry: a Literal of one word, which is its default.
+    own : dict
+        The entries that came with the program.
+    """
+
+    def __init__(self, base: type[_Entry], discriminator: str, entries: Iterable[type[_Entry]]) -> None:
+        super().__init__()
+        self.base, self.discriminator = base, discriminator
+        for entry in entries:
+            name = self.name_of(entry)
+            if name in self:
+                raise TypeError(
+                    f'{entry.__module__}:{entry.__name__}: {discriminator} "{name}" is used twice'
+                )
+            self[name] = entry
+        self.own: dict[str, type[_Entry]] = dict(self)
+
+    def name_of(self, entry: type[_Entry]) -> str:
+        """Name of a class that may be an entry.
+
+        Raises
+        ------
+        TypeError
+            It is no subclass of the base, or its name is missing or used by another class.
+        """
+        place = f"{getattr(entry, '__module__', '')}:{getattr(entry, '__name__', entry)}"
+        if not (isinstance(entry, type) and issubclass(entry, self.base)):
+            raise TypeError(f"{place} is no {self.base.__name__}")
+        info = entry.model_fields.get(self.discriminator)
+        if info is None or get_args(info.annotation) != (info.default,):
+            raise TypeError(f"{place}: {self.discriminator} must be a Literal of one word, its default")
+        if info.default in self and not same_class(self[info.default], entry):
+            raise TypeError(f'{place}: {self.discriminator} "{info.default}" is used twice')
+        return info.default
+
+    def add(self, entry: type[_Entry]) -> None:
+        """Add an entry, or put a class in the place of an earlier form of itself; all models offer it then.
+
+        Raises
+        ------
+        TypeError
+            As of `name_of`.
+        """
+        name, before, names = self.name_of(entry), tuple(self.values()), tuple(self)
+        self[name] = entry
+
+        def change(annotation: Any) -> Any:
+            if get_args(annotation) == before:
+                return _union(self.values())
+            return Literal[tuple(self)] if get_args(annotation) == names else None
+
+        offer(change)
+
+    @property
+    def field_type(self) -> Any:
+        """Type of a field that holds any entry, as of now."""
+        return any_of(self, self.discriminator)
+
+
+def same_class(one: type, other: type) -> bool:
+    """Whether a class is another one defined anew, as when a notebook's cell or a file is run again."""
+    return (one.__module__, one.__qualname__) == (other.__module__, other.__qualname__)
+
+
+def place_of(thing: Any) -> str:
+    """File and line where a class or function is defined, for faults; its module where that is not known."""
+    try:
+        file = inspect.getsourcefile(thing) or ""
+        line = inspect.getsourcelines(thing)[1]
+    except (OSError, TypeError):
+        return str(getattr(thing, "__module__", ""))
+    return f"{os.path.basename(file)}:{line}"
+
+
+def registry(base: type[_Entry], discriminator: str, *places: str) -> Registry[_Entry]:
     """Load the classes of a registry.
 
     Parameters
@@ -48,7 +134,7 @@ def registry(base: type[_Entry], discriminator: str, *places: str) -> dict[str, 
 
     Returns
     -------
-    dict
+    Registry
         Name -> class.
 
     Raises
@@ -56,21 +142,14 @@ def registry(base: type[_Entry], discriminator: str, *places: str) -> dict[str, 
     TypeError
         A place holds no subclass of ``base``, or its name is missing or used twice.
     """
-    entries: dict[str, type[_Entry]] = {}
-    for place in places:
-        entry = loaded(place)
-        if not (isinstance(entry, type) and issubclass(entry, base)):
-            raise TypeError(f"{place} is no {base.__name__}")
-        info = entry.model_fields[discriminator]
-        if get_args(info.annotation) != (info.default,):
-            raise TypeError(f"{place}: {discriminator} must be a Literal of one word, its default")
-        if info.default in entries:
-            raise TypeError(f'{place}: {discriminator} "{info.default}" is used twice')
-        entries[info.default] = entry
-    return entries
+    return Registry(base, discriminator, map(loaded, places))
 
 
-def any_of(entries: dict[str, type[_Entry]], discriminator: str) -> Any:
+def _union(entries: Iterable[type[Parameters]]) -> Any:
+    return Union[tuple(entries)]  # noqa: UP007
+
+
+def any_of(entries: Mapping[str, type[_Entry]], discriminator: str) -> Any:
     """Make the type of a field that holds any entry of a registry, told apart by ``discriminator``.
 
     The name of an entry alone, ``"unity2"``, is the entry with its defaults, ``{ id = "unity2" }``.
@@ -79,9 +158,14 @@ def any_of(entries: dict[str, type[_Entry]], discriminator: str) -> Any:
     def block(value: Any) -> Any:
         return {discriminator: value} if isinstance(value, str) else value
 
-    entry = Annotated[Union[tuple(entries.values())], Field(discriminator=discriminator)]  # noqa: UP007
-    named = Union[Literal[tuple(entries)], entry]  # noqa: UP007
-    return Annotated[entry, BeforeValidator(block, json_schema_input_type=named)]
+    entry = Annotated[_union(entries.values()), Field(discriminator=discriminator)]
+    return Annotated[entry, BeforeValidator(block, json_schema_input_type=_named(entries, discriminator))]
+
+
+def _named(entries: Mapping[str, type[Parameters]], discriminator: str) -> Any:
+    """What such a field takes: a name, or a block."""
+    entry = Annotated[_union(entries.values()), Field(discriminator=discriminator)]
+    return Union[Literal[tuple(entries)], entry]  # noqa: UP007
 
 
 def blocks_of(model: type[Parameters]) -> dict[type[Parameters], list[tuple[str, bool]]]:

@@ -15,13 +15,13 @@ from navcore.io.source import read_text
 if TYPE_CHECKING:
     from navcore.io.column_map import ColumnMap
 
-FORMATS = (
+FORMATS: list[Any] = [
     "navcore.io.tables",
     "navcore.io.gpx",
     "navcore.io.nmea_recording",
     "navcore.io.csv",
-)
-"""Modules that read a format, in the order in which they are asked."""
+]
+"""Modules that read a format, in the order in which they are asked; one that was added is itself here."""
 _OTHERWISE = "navcore.io.nmea_recording"
 """Says what is expected of a text that no format recognises."""
 _TABLES, _TEXT_TABLES = "navcore.io.tables", "navcore.io.csv"
@@ -90,11 +90,11 @@ def mapped_format(path: Path) -> TableFormat | None:
     return _module(_TEXT_TABLES) if text else found if found is _module(_TABLES) else None
 
 
-def _recognising(path: Path, names: Sequence[str]) -> Format | None:
+def _recognising(path: Path, names: Sequence[Any]) -> Format | None:
     """First of these modules that recognises a file."""
     candidate = Candidate(path)
     return next((found for found in map(_module, names) if found.recognises(candidate)), None)
 
 
-def _module(name: str) -> Any:
-    return import_module(name)
+def _module(name: Any) -> Any:
+    return import_module(name) if isinstance(name, str) else name

@@ -8,6 +8,7 @@ Q = 1 - H and d = V_r - V_c (external) or -V_c (internal), a = 0. Velocity feedb
 """
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,15 @@ import numpy as np
 from navcore.analysis import analyse
 from navcore.foundation.errors import InputError
 from navcore.foundation.records import fill_record, new_record, record_type
+from navcore.foundation.registry import Registry
+from navcore.law.added_call import (
+    ADDED,
+    ADDED_ID,
+    ADDED_MEMORY,
+    POLICY_NUMBERS,
+    SWITCHING_NUMBERS,
+)
+from navcore.law.added_code import policy_place, remembered, switching_place
 from navcore.law.combination import combination_faults, network_in_force, realisation_of
 from navcore.law.policy import POLICIES, PolicyParameters
 from navcore.law.policy.base import LOW_MARGIN
@@ -41,23 +51,31 @@ from navcore.networks.discrete import discretise
 
 __all__ = ["Law", "law_step", "network_in_force", "prepare_law", "realisation_of"]
 
+
+def _places(kinds: Registry[Any], of: str, added: np.dtype) -> np.dtype:
+    """Records of a registry's own classes under their ids, and the place of an added one."""
+    own = {name: getattr(kind, of) for name, kind in kinds.own.items()}
+    return record_type(**own, **{ADDED_ID: added})
+
+
 LAW_PARAMETERS = record_type(
     **PARAMETERS,
-    policies=record_type(**{name: kind.numbers for name, kind in POLICIES.items()}),
-    switchings=record_type(**{name: kind.numbers for name, kind in SWITCHINGS.items()}),
+    policies=_places(POLICIES, "numbers", POLICY_NUMBERS),
+    switchings=_places(SWITCHINGS, "numbers", SWITCHING_NUMBERS),
 )
 """Parameters of a law: the shared ones, and those of each policy and switching method under its id."""
 LAW_STATE = record_type(
     **STATE,
-    policies=record_type(**{name: kind.memory for name, kind in POLICIES.items()}),
-    switchings=record_type(**{name: kind.memory for name, kind in SWITCHINGS.items()}),
+    policies=_places(POLICIES, "memory", ADDED_MEMORY),
+    switchings=_places(SWITCHINGS, "memory", ADDED_MEMORY),
 )
 """State of a law, likewise."""
 LAW_HISTORY = record_type(
-    **HISTORY, switchings=record_type(**{name: kind.history for name, kind in SWITCHINGS.items()})
+    **HISTORY, switchings=record_type(**{name: kind.history for name, kind in SWITCHINGS.own.items()})
 )
 """One row of a law's history."""
 
+_RECORDS = LAW_PARAMETERS, LAW_STATE, LAW_HISTORY
 _REALISATION_CODES = {"network": NETWORK, "feedback": FEEDBACK, "as_printed": AS_PRINTED}
 _OFFSET_FADES_S = 100.0
 """Time constant with which the correction passes to that of a re-tuned network."""
@@ -115,7 +133,7 @@ def prepare_law(
         xi_target=xi,
         epoch=-1,
         internal=CODES[damping] == INTERNAL,
-        policies={policy.id: policy.remembered()},
+        policies=_memory(policy),
     )
     p["tan_half"] = math.tan(0.5 * omega_s * law_step_s)
     _fill_form(p, s, parameters, network, policy, switching)
@@ -135,10 +153,11 @@ def _settings(
     policy: PolicyParameters, switching: SwitchingParameters, law_step_s: float, omega_s: float
 ) -> dict[str, Any]:
     """Parameters that policy and switching method decide."""
-    plain = policy.plain and switching.plain
+    own = policy.id in POLICIES.own, switching.id in SWITCHINGS.own
+    plain = all(own) and policy.plain and switching.plain
     return {
-        "policy": list(POLICIES).index(policy.id),
-        "switching": list(SWITCHINGS).index(switching.id),
+        "policy": list(POLICIES.own).index(policy.id) if own[0] else ADDED,
+        "switching": list(SWITCHINGS.own).index(switching.id) if own[1] else ADDED,
         "plain": plain,
         "steady": plain and policy.always,
         "keeps_history": policy.keeps_time or switching.keeps_time,
@@ -147,9 +166,24 @@ def _settings(
         "remembers": policy.remembers,
         "law_step": law_step_s,
         "offset_decay": math.exp(-law_step_s / _OFFSET_FADES_S),
-        "policies": {policy.id: policy.packed(law_step_s)},
-        "switchings": {switching.id: switching.packed(law_step_s, omega_s)},
+        "policies": _numbers(policy, policy_place, POLICIES, policy.packed(law_step_s)),
+        "switchings": _numbers(switching, switching_place, SWITCHINGS, switching.packed(law_step_s, omega_s)),
     }
+
+
+def _numbers(
+    part: Any, place: Callable[..., dict[str, Any]], kinds: Registry[Any], packed: dict[str, Any]
+) -> dict[str, Any]:
+    """Numbers of a policy or switching method under its id, or in the place of an added one."""
+    if part.id in kinds.own:
+        return {part.id: packed}
+    return {ADDED_ID: place(type(part), _RECORDS, packed)}
+
+
+def _memory(policy: PolicyParameters) -> dict[str, Any]:
+    """Memory of a policy that is not 0 at the start, likewise."""
+    values = policy.remembered()
+    return {policy.id: values} if policy.id in POLICIES.own else {ADDED_ID: remembered(type(policy), values)}
 
 
 def _fill_form(

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from navcore.foundation.records import COUNT, FLAG, REAL, record_type
+from navcore.law.added_call import USER_PARAMETERS, USER_STATE
 
 MAX_STATES = 4
 """States of a network in one channel (navcore.networks.base.MAX_ORDER)."""
@@ -62,6 +63,7 @@ PARAMETERS = {
     "offset_decay": REAL,  # what a call leaves of the offset of a re-tuned network
     "tan_half": REAL,  # tan(omega_s T/2), the bilinear step in normalised time
     "tuning": TUNING,
+    "user": USER_PARAMETERS,  # a law from outside the program, in place of all this
 }
 """Fields of the parameters, which stay during a run."""
 
@@ -121,6 +123,7 @@ STATE = {
     "last_velocity": (REAL, (2,)),  # V_c at the last call, m/s
     "last_heading": REAL,  # rad
     "total_heading": REAL,  # rad, without wraps
+    "user": USER_STATE,
 }
 """Fields of the state, which changes during a run."""
 

@@ -8,6 +8,16 @@ without the rest, which takes half the time.
 from typing import Any, NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.registry import Registry
+from navcore.law.added_call import (
+    ADDED,
+    ADDED_ID,
+    decide_added,
+    feed_added,
+    follow_added,
+    restore_added,
+    switch_added,
+)
 from navcore.law.dispatch import Choice, dispatch
 from navcore.law.history import remember
 from navcore.law.network_state import advance_network, channel_of, clear_network, fed_back, rest
@@ -37,20 +47,24 @@ class Correction(NamedTuple):
     a_n: float
 
 
-def _choices(registry: dict[str, Any], function: str, plain: bool = False) -> list[Choice]:
-    """Compiled functions of a registry's entries, those that have one; with ``plain`` of plain entries."""
-    functions = ((i, name, getattr(registry[name], function)) for i, name in enumerate(registry))
+def _choices(registry: Registry[Any], function: str, added: Any = None, plain: bool = False) -> list[Choice]:
+    """Compiled functions of a registry's own entries, those that have one, and what calls an added one's.
+
+    With ``plain`` those of plain entries.
+    """
+    functions = ((i, name, getattr(registry[name], function)) for i, name in enumerate(registry.own))
     wanted = (each for each in functions if each[2] is not None)
-    return [Choice(*each) for each in wanted if registry[each[1]].plain or not plain]
+    choices = [Choice(*each) for each in wanted if registry[each[1]].plain or not plain]
+    return choices if added is None else [*choices, Choice(ADDED, ADDED_ID, added)]
 
 
-_decide = dispatch("policies", _choices(POLICIES, "decide"), True)
+_decide = dispatch("policies", _choices(POLICIES, "decide", decide_added), True)
 _decide_plainly = dispatch("policies", _choices(POLICIES, "decide", plain=True), True)
-_follow = dispatch("policies", _choices(POLICIES, "follow"), None)
-_switch = dispatch("switchings", _choices(SWITCHINGS, "switch"), None)
+_follow = dispatch("policies", _choices(POLICIES, "follow", follow_added), None)
+_switch = dispatch("switchings", _choices(SWITCHINGS, "switch", switch_added), None)
 _switch_plainly = dispatch("switchings", _choices(SWITCHINGS, "switch", plain=True), None)
-_feed = dispatch("switchings", _choices(SWITCHINGS, "feed"), (0.0, 0.0))
-_restore = dispatch("switchings", _choices(SWITCHINGS, "restore"), None)
+_feed = dispatch("switchings", _choices(SWITCHINGS, "feed", feed_added), (0.0, 0.0))
+_restore = dispatch("switchings", _choices(SWITCHINGS, "restore", restore_added), None)
 
 
 @inlined

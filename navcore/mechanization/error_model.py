@@ -19,6 +19,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.law.azimuth import UpRate, steer
 from navcore.law.law import Law, law_step
 from navcore.law.records import E, N, Sensed, Watched
+from navcore.law.user_law import ask_user_law
 from navcore.mechanization.recorder import Errors, Recorder, flush, given_out, record
 from navcore.mechanization.trajectory import Coefficients
 from navcore.sensors.base import ReferenceErrors, SensorErrors
@@ -172,6 +173,9 @@ def correction(law, sensed, begin, x):
     """Return the `Correction` of the level channels, and c_U (rad/s); with a step's first coefficients."""
     c, c_u = law_step(law, sensed), 0.0
     if law.p.azimuth_order > 0:
+        if law.p.user.step != 0:
+            lat = math.atan(begin.tan_lat) + x.d_lat
+            return ask_user_law(law, sensed.v_e, sensed.v_n, sensed.heading, lat)
         c, c_u = steer(law, c, _up_rate(begin, x))
     return c, c_u
 

@@ -1,10 +1,10 @@
 """The registry of networks and the type of a field that holds any of them."""
 
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from pydantic import BeforeValidator
 
-from navcore.foundation.registry import any_of, registry
+from navcore.foundation.registry import registry
 from navcore.networks.base import NetworkParameters
 from navcore.networks.pasted import is_pasted, pasted
 
@@ -23,13 +23,17 @@ NETWORKS = registry(
 )
 """All networks by id, in the order in which the page offers them."""
 
-if TYPE_CHECKING:
-    Network: TypeAlias = NetworkParameters
-else:
-    Network = Annotated[
-        any_of(NETWORKS, "id"),
+
+def network_type() -> Any:
+    """Type of a field that holds any network, told apart by ``id``, as of now."""
+    return Annotated[
+        NETWORKS.field_type,
         BeforeValidator(
             lambda value: pasted(value) if isinstance(value, str) and is_pasted(value) else value
         ),
     ]
+
+
+if TYPE_CHECKING:
+    Network: TypeAlias = NetworkParameters
     """Type of a field that holds any network, told apart by ``id``."""

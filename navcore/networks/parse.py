@@ -2,19 +2,20 @@
 
 import re
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.offered import when_changed
 from navcore.foundation.text import Text
 from navcore.foundation.written_toml import mended, read_toml_text
 from navcore.networks.base import NetworkParameters
-from navcore.networks.catalogue import NETWORKS, Network
+from navcore.networks.catalogue import NETWORKS, network_type
 from navcore.networks.pasted import is_pasted, pasted
 
-_ADAPTER: TypeAdapter[Any] = TypeAdapter(Network)
 _EXAMPLE = Text('must be fields such as: id = "compass", sigma = 0.0088, xi = 0.7')
 
 
@@ -44,9 +45,17 @@ def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "networ
     else:
         data = dict(text_or_mapping)
     try:
-        return _ADAPTER.validate_python(data)
+        return _adapter().validate_python(data)
     except ValidationError as error:
-        raise InputError(faults_from(error, Network, data, where)) from None
+        raise InputError(faults_from(error, network_type(), data, where)) from None
+
+
+@cache
+def _adapter() -> TypeAdapter[Any]:
+    return TypeAdapter(network_type())
+
+
+when_changed(_adapter.cache_clear)
 
 
 def _of_text(text: str, where: str) -> Any:

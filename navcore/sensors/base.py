@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from navcore.foundation.parameters import Parameters
 from navcore.foundation.registry import loaded
 
 NO_DRIFT = (0.0, 3600.0)
@@ -61,9 +62,28 @@ class ErrorPart:
         return bool(own) or self.white > 0.0 or self.markov[0] > 0.0 or self.has_shape
 
 
-def load_terms(*places: str) -> tuple[Any, ...]:
+def load_terms(*places: str) -> list[Any]:
     """Load the classes of terms from ``"package.module:Class"``."""
-    return tuple(map(loaded, places))
+    return [*map(loaded, places)]
+
+
+@dataclass(frozen=True)
+class Apart:
+    """A term that was added while the program runs, from whose class the sensor's block is not derived.
+
+    Attributes
+    ----------
+    term : type
+        The class of the term.
+    """
+
+    term: type[Parameters]
+
+    def parts(self, block: Parameters) -> Iterable[Any]:
+        """Give the parts of the term for the values of its fields in a block that may be older than it."""
+        given = vars(block)
+        own = {name: given.get(name, info.default) for name, info in self.term.model_fields.items()}
+        return self.term.model_construct(**own).parts()  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def modelled_drift(parts: Iterable[ErrorPart]) -> ErrorPart | None:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
         pass
 else:
     # pydantic takes the fields of the last base first
-    _Errors = create_model("_Errors", __base__=TERMS[::-1])
+    _Errors = create_model("_Errors", __base__=tuple(TERMS[::-1]))
 
 RECORDING = ("file", "map", "axes", "begin_s")
 """Fields of the block that say which recording is used; the others are errors."""

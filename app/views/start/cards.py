@@ -16,6 +16,7 @@ from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import InputError
+from navcore.foundation.offered import when_changed
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC
 from navcore.mechanization.recorder import DV_E, DV_N
@@ -56,6 +57,9 @@ class NetworkCard:
 def network_cards(omega_s: float) -> tuple[NetworkCard, ...]:
     """Cards of all registered networks, in their order, for a Schuler frequency in rad/s."""
     return tuple(_card(id, omega_s) for id in NETWORKS)
+
+
+when_changed(network_cards.cache_clear)
 
 
 def _card(id: str, omega_s: float) -> NetworkCard:

@@ -174,7 +174,7 @@ def _epoch(k, run, row, true_q, m, n_cos, x, runs):
         logs.time_s[run], logs.velocity[run], logs.valid[run], logs.body_frame, logs.hold_s
     )  # fmt: skip
     held = law_epoch(k * con.dt, v_e, v_n, q, runs.last[run], log, law)
-    held, x[_C_U * _W + j] = azimuth_epoch(law, held, terms, v_e)
+    held, x[_C_U * _W + j] = azimuth_epoch(law, held, terms, runs.last[run])
     x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j] = held
     if row >= 0:
         i = row if truth.shape[0] > 1 else 0

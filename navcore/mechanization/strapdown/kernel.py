@@ -9,6 +9,7 @@ from navcore.law.azimuth import UpRate, steer
 from navcore.law.history import USE_HEADING
 from navcore.law.law import law_step
 from navcore.law.records import FREE, E, N, Sensed, U, Watched
+from navcore.law.user_law import ask_user_law
 from navcore.mechanization.recorder import Errors, flush, given_out, record
 from navcore.mechanization.strapdown.attitude import angles_of, heading_of, misalignment, quaternion_of
 from navcore.mechanization.strapdown.log import LastCall, held_difference, newest_epoch, usable
@@ -63,15 +64,21 @@ def law_epoch(t, v_e, v_n, q, last, log, law):
     if log.body_frame or law.p.remembers == USE_HEADING:
         heading = heading_of(q[0], q[1], q[2], q[3])
     _read_log(t, v_e, v_n, heading, last, log, law.s)
-    last.time, last.v_e, last.v_n = t, v_e, v_n
+    last.time, last.v_e, last.v_n, last.heading = t, v_e, v_n, heading
     return law_step(law, Sensed(v_e, v_n, heading))
 
 
 @inlined
-def azimuth_epoch(law, held, terms, v_e):
-    """Ask the azimuth channel of a law that has just given ``held``, at the place of `EarthTerms`."""
+def azimuth_epoch(law, held, terms, last):
+    """Ask the azimuth channel of a law that has just given ``held``, at the place of `EarthTerms`.
+
+    ``last`` is the record `LAST_CALL` of that call. A user's law gives all channels here.
+    """
     if law.p.azimuth_order == 0:
         return held, 0.0
+    v_e = last.v_e
+    if law.p.user.step != 0:
+        return ask_user_law(law, v_e, last.v_n, last.heading, math.atan2(terms.sin, terms.cos))
     by_v_e = terms.sin * terms.sec * terms.inv_n
     by_lat = EARTH_RATE * terms.cos + v_e * terms.inv_n * terms.sec * terms.sec
     up = UpRate(EARTH_RATE * terms.sin + v_e * by_v_e, by_lat, by_v_e, terms.inv_m, EARTH_RATE * terms.cos)
@@ -168,7 +175,7 @@ def advance_kernel(increments, first, pace, con, x, truth, heights, log, law, na
             held = law_epoch(k * dt, x.v[E], x.v[N], q, x.last, log, law)
             if law.p.azimuth_order > 0:
                 terms = earth_terms(con.e2, con.lat0 + x.d_lat, x.height)
-                held, x.c[U] = azimuth_epoch(law, held, terms, x.v[E])
+                held, x.c[U] = azimuth_epoch(law, held, terms, x.last)
             x.c[E], x.c[N], x.a[E], x.a[N] = held.c_e, held.c_n, held.a_e, held.a_n
             if altimeter:
                 _altimeter_epoch(k * dt, law_every * dt, con, x, pace.record_step_s, heights)

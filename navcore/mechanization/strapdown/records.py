@@ -26,6 +26,7 @@ LAST_CALL = record_type(
     time=REAL,  # s
     v_e=REAL,  # computed velocity, m/s
     v_n=REAL,
+    heading=REAL,  # rad; 0 where nothing needs it
 )
 """The law's previous call."""
 STATE = record_type(
