@@ -33,9 +33,7 @@ def baggage() -> Baggage:
         whole = isinstance(one.thing, ModuleType)
         module = one.thing.__name__ if whole else one.thing.__module__
         if module == "__main__":
-            why = Text(
-                "is defined in the script or notebook that runs: put it into a file of its own"
-            )
+            why = Text("is defined in the script or notebook that runs: put it into a file of its own")
             raise InputError(Fault(place_of(one.thing), one.name, None, why))
         if getattr(sys.modules.get(module), "__file__", None) not in brought():
             others[module if whole else f"{module}:{one.thing.__qualname__}"] = None
