@@ -116,6 +116,8 @@ def test_the_command_runs_it_and_reads_its_format(installed: Path, tmp_path: Pat
     case = str(installed / "case.toml")
     document = json.loads(python(installed, "-m", "schuler_bench", "run", case, "--json"))
     assert document["methods"][0]["status"] == "ok"
+    export = ["export", case, "--as", "c", "--out", str(tmp_path / "law")]
+    assert python(installed, "-m", "schuler_bench", *export, code=2) == ""
     log = tmp_path / "log.jsonl"
     log.write_text("\n".join(json.dumps({"utc_s": 1.7e9 + i, "speed_mps": 5.0 + i}) for i in range(3)))
     report = json.loads(python(installed, "-m", "schuler_bench", "check", str(log), "--json"))
