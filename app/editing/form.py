@@ -340,6 +340,18 @@ def field_words(model: BaseModel, path: str) -> tuple[str, str]:
     return label, "" if unit == "1" else unit
 
 
+def label_alone(spec: FieldSpec) -> str:
+    """Label of a control where no tab stands around it: with the word that the tab's name gives.
+
+    Examples
+    --------
+    >>> label_alone(FieldSpec(("reference", "noise_mps"), "noise (m/s)", "", "number", 0.0))
+    'log noise (m/s)'
+    """
+    of = _OF_BLOCKS.get(str(spec.path[0]))
+    return spec.label if of is None or of in spec.label else Text("{of} {label}", of=of, label=spec.label)
+
+
 def plain_label(name: str, info: FieldInfo) -> str:
     """Label of a field without unit and element: its own, else its name."""
     extra = extra_of(info)

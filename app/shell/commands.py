@@ -166,7 +166,8 @@ class Commands:
         Parameters
         ----------
         what : str
-            "tab": bring the tab of that name to the front; "link": show a link to another session; "keys":
+            "tab": bring the tab of that name to the front; "field": the same, and the focus to the control
+            of that id, both as JSON; "link": show a link to another session; "keys":
             list the keys; "upload": let the user choose a file; "front": bring the tabs of these names,
             parted by "|", to the front without giving them the focus; "front-again": the same, but for
             what the user has chosen since the page last told of its tabs; "copy", "copy-latex",

@@ -16,6 +16,7 @@ from schuler_bench.session.view import View
 from schuler_bench.shell import notices
 from schuler_bench.shell.commands import LONGEST_TEXT, Command
 from schuler_bench.shell.control import Control
+from schuler_bench.shell.finding import Finder
 from schuler_bench.shell.opening import Opening
 from schuler_bench.shell.reports import view_names
 from schuler_bench.shell.reset import Resets
@@ -47,6 +48,7 @@ class Palette:
         self._state: tuple[object, ...] = ()
         self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
+        self._finder = Finder(frame)
 
     def _register(self, opening: Opening) -> None:
         session, ask, tell = self._session, self._commands.ask_page, self._if
@@ -135,6 +137,7 @@ class Palette:
             return
         self._state, self._values = state, values
         self._resets.show(session.opened, session.scenario, controls)
+        self._finder.show()
         changed = len(changed_fields(session.opened, session.scenario))
         control = None if self._watches else self._frame.editor.moved
         last = self._resets.of(control)

@@ -168,6 +168,13 @@ class View:
         """Its controls of fields."""
         return ()
 
+    def fields(self) -> Sequence[FieldSpec]:
+        """Fields that it can show of the session's scenario, which the palette finds."""
+        return [control.spec for control in self.controls] if self.title else ()
+
+    def reveal(self, spec: FieldSpec) -> None:
+        """Show the control of one of `fields`, which it may leave out until it is asked for."""
+
     def follow_scenario(self) -> None:
         """Show the session's scenario; the control in use (``frame.editor.moved``) stays as it is."""
 

@@ -104,6 +104,24 @@
     tab?.focus();
   }
 
+  // A field that the palette found: its tab may have to be shown first, and its control to be made.
+  function openField(text) {
+    const [tab, id] = JSON.parse(text);
+    openTab(tab);
+    let tries = 40;
+    const timer = setInterval(() => {
+      const label = [...document.getElementsByTagName("label")].find(({ htmlFor }) => htmlFor === id);
+      const row = label?.closest(".mantine-Flex-root");
+      const box = row?.querySelector("input, select, [role=slider], button");
+      if ((!box || box.getClientRects().length === 0) && --tries > 0) return;
+      clearInterval(timer);
+      if (!box) return;
+      row.scrollIntoView({ block: "center" });
+      box.focus();
+      box.select?.();
+    }, 50);
+  }
+
   function element(tag, text, attributes = {}) {
     const made = Object.assign(document.createElement(tag), { textContent: text });
     for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -189,6 +207,7 @@
   const ACTIONS = {
     language: window.schuler.switchLanguage,
     tab: openTab,
+    field: openField,
     front: follow,
     "front-again": bringBack,
     upload,

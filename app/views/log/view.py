@@ -162,20 +162,37 @@ class LogView(FieldsView):
         self._fitted.content = "" if self._last_fit is None else _told(self._last_fit[1])
         self._use.visible = self._last_fit is not None
 
-    def follow_scenario(self) -> None:
-        """Show the scenario's values; errors that it sets are always shown."""
-        scenario = self.session.scenario
-        self._show_fit(scenario)
-        self._show_correction(scenario)
-        kind = scenario.reference.kind
+    def fields(self) -> list[FieldSpec]:
+        """All of them, shown or not."""
+        shown = super().fields()
+        paths = {spec.path for spec in shown}
+        return [*shown, *(spec for group in self._groups() for spec in group if spec.path not in paths)]
+
+    def reveal(self, spec: FieldSpec) -> None:
+        """Show all errors of the log where this one is not shown."""
+        if all(control.spec.path != spec.path for control in self.controls):
+            self._all.value = True
+            self.frame.refresh()
+
+    def _groups(self) -> tuple[list[FieldSpec], list[FieldSpec]]:
+        """Fields of the scenario's log: those that are shown without asking, and the others."""
         recorded = [
             spec
             for spec in self._specs
             if spec.path[1] in RECORDED_ONLY or (spec.kind == "choice" and spec.path[1] != "part")
         ]
         simulated = [spec for spec in self._specs if spec.path[1] not in RECORDED_ONLY]
+        kind = self.session.scenario.reference.kind
         specs = {"none": [], "file": recorded}.get(kind, simulated)
-        first, more = specs[:_FIRST], specs[_FIRST:]
+        return specs[:_FIRST], specs[_FIRST:]
+
+    def follow_scenario(self) -> None:
+        """Show the scenario's values; errors that it sets are always shown."""
+        scenario = self.session.scenario
+        self._show_fit(scenario)
+        self._show_correction(scenario)
+        kind = scenario.reference.kind
+        first, more = self._groups()
         self._all.visible = bool(more)
         if not self._all.value:
             more = self.given(more)

@@ -5,6 +5,7 @@ from pathlib import Path
 from navcore.foundation.text import Text
 from navcore.sensors.imu import Imu
 from schuler_bench.editing import form
+from schuler_bench.editing.form import FieldSpec
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import FieldsView, Tab, if_user
 
@@ -38,6 +39,24 @@ class SensorsView(FieldsView):
             )
         self._all.on_update(if_user(self.frame.refresh))
 
+    def fields(self) -> list[FieldSpec]:
+        """All of them, shown or not."""
+        return [spec for group in self._groups() for spec in group]
+
+    def reveal(self, spec: FieldSpec) -> None:
+        """Show all errors where this one is not shown."""
+        if all(control.spec.path != spec.path for control in self.controls):
+            self._all.value = True
+            self.frame.refresh()
+
+    def _groups(self) -> tuple[list[FieldSpec], list[FieldSpec]]:
+        """Fields of the scenario's IMU: those that are shown without asking, and the others."""
+        recorded = [spec for spec in self._specs if spec.path[-1] in _RECORDED_ONLY]
+        if self.session.scenario.imu.file:
+            return recorded, []
+        simulated = [spec for spec in self._specs if spec not in recorded]
+        return simulated[:_FIRST], simulated[_FIRST:]
+
     def follow_scenario(self) -> None:
         """Show the scenario's values; errors that it sets are always shown."""
         file = self.session.scenario.imu.file
@@ -46,9 +65,7 @@ class SensorsView(FieldsView):
         )
         self._file.content = notices.small(told) if file else ""
         self._file.visible, self._all.visible = bool(file), not file
-        recorded = [spec for spec in self._specs if spec.path[-1] in _RECORDED_ONLY]
-        simulated = [spec for spec in self._specs if spec not in recorded]
-        first, more = (recorded, []) if file else (simulated[:_FIRST], simulated[_FIRST:])
+        first, more = self._groups()
         if not self._all.value:
             more = self.given(more)
         self.show_fields({"first": first, "more": more})
