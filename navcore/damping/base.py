@@ -138,6 +138,10 @@ class Damping:
         """Whether the network is fed with the system's own velocity, so that manoeuvres enter."""
         return self.uses_network and not self.uses_log
 
+    def of(self, method: Configured) -> "Damping":
+        """Return the kind that a method is by its settings: this one."""
+        return self
+
     def reads_log(self, method: Configured) -> bool:
         """Whether the log changes a run: by its velocity, or by the difference that a policy decides by."""
         return self.uses_log or (self.uses_network and method.policy.needs_reference)

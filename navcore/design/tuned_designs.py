@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from navcore.damping.kalman import KalmanSettings
 from navcore.design.forms import Form, forms_of, offered
 from navcore.design.measures import Setting, measure, read_objective
 from navcore.design.search import REFUSED, Effort, Search
@@ -31,12 +32,15 @@ from navcore.quantities import HEADING, POSITION, QUANTITIES, TILT, VELOCITY, Qu
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+from navcore.sensors.reference import Reference
 
 SEARCH_SEEDS, FEW_SEEDS = 400, 16
 """Of the choice among the settings that a search has found, and of one over several scenarios."""
 _CHOICE_S = 30.0
 """Processor time of that choice, about."""
 _CANDIDATES = 3
+_STEADY_S = 1e6
+"""Correlation time that a filter is told of a current that does not change."""
 INTERVALS = 96
 """Of a run: coarse, for what a search sees is only a guide."""
 _EFFORT = Effort(5, 5, 40)
@@ -79,9 +83,31 @@ NO_SPREAD = Spread()
 
 
 def kalman(scenario: Scenario) -> tuple[Method, ...]:
-    """Give the Kalman filter as a method, if the scenario can carry one out."""
-    method = Method(name="kalman", damping="kalman")
-    return (method,) if not [*scenario.model_copy(update={"method": (method,)}).faults()] else ()
+    """Give the Kalman filter as a method, if the scenario can carry one out.
+
+    Where the water moves or the log has a scale error, also one that is told how large these may be.
+    """
+    told = KalmanSettings(**_sizes(scenario.reference))
+    methods = [Method(name="kalman", damping="kalman")]
+    if told.further:
+        methods.append(
+            Method.model_validate(
+                {"name": "kalman, of the water too", "damping": "kalman", "kalman": told.model_dump()}
+            )
+        )
+    faults = ([*scenario.model_copy(update={"method": (method,)}).faults()] for method in methods)
+    return tuple(method for method, found in zip(methods, faults, strict=True) if not found)
+
+
+def _sizes(reference: Reference) -> dict[str, float]:
+    """Sizes, without the values, of the velocity of the water and of the scale error of the log."""
+    currents = [reference.current_mps, *(one.current_mps for one in reference.current)]
+    steady = max(math.hypot(*one) for one in currents) / math.sqrt(2.0)
+    changes = math.hypot(*reference.tide_mps) / 2.0
+    sizes = {"current_std_mps": math.hypot(steady, changes), "scale_std_ppm": abs(reference.scale_ppm)}
+    if not changes and not reference.current:
+        sizes["current_tau_s"] = _STEADY_S
+    return sizes
 
 
 def held_as_set(scenario: Scenario) -> tuple[Method, ...]:

@@ -36,7 +36,7 @@ def filter_form(subject: Subject, given: np.ndarray | None = None) -> Form:
     scenario = subject.scenario
     given = inputs_along(subject) if given is None else given
     truth = truth_of(scenario, 1, subject.step_s).values[0]
-    model, P, _ = filter_model(scenario, subject.step_s, truth, np.zeros(0, dtype=bool))
+    model, P, _ = filter_model(scenario, subject.method, subject.step_s, truth, np.zeros(0, dtype=bool))
     earth = scenario.earth
     parameters = new_record(
         MOTION,

@@ -82,7 +82,7 @@ class Method(_Settled):
         if self.gyrocompass is not None and self.damping == GYROCOMPASS.id:
             return GYROCOMPASS
         whole = WHOLE.get(self.damping) if self.azimuth.id != "none" else None
-        return whole or KINDS[self.damping]
+        return whole or KINDS[self.damping].of(self)
 
     @property
     def reads_log(self) -> bool:

@@ -29,6 +29,11 @@ from tests.unit.test_export_laws import FEW, subject
 PARTS = range(len(FEW))
 OTHER = {
     "kalman": ['method.0.damping="kalman"'],
+    "kalman of the water": [
+        'method.0.damping="kalman"',
+        "method.0.kalman={current_std_mps=0.3, scale_std_ppm=5000.0}",
+        'reference.frame="body"',
+    ],
     "averaging": ['method.0.damping="averaging"', 'motion={kind="static"}'],
 }
 

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from navcore import budget
 from navcore.design.floor import steady_floor
+from navcore.design.tuned_designs import kalman
 from navcore.engine.drivers.kalman import NOTHING_RANDOM, filtered_linear, filtered_strapdown
 from navcore.engine.drivers.strapdown import settings_of
 from navcore.engine.environment import environment
@@ -90,6 +92,91 @@ def test_it_wins_while_its_model_is_right_and_loses_to_an_event_it_was_not_told_
     assert kalman < min(damped)
     misled, *disturbed = tilts([event])
     assert misled > 2.0 * max(disturbed)
+
+
+TURNING = {
+    "kind": "legs",
+    "leg": [
+        {"duration_s": 5400.0, "speed_mps": 6.0},
+        {"duration_s": 180.0, "turn_dps": 0.5},
+        {"duration_s": 5400.0},
+        {"duration_s": 180.0, "turn_dps": 0.5},
+        {"duration_s": 20000.0, "speed_mps": 3.0},
+    ],
+}
+WATER = {"current_std_mps": 0.4, "current_tau_s": 1e6}
+SCALE = {"scale_std_ppm": 8000.0}
+
+
+def through_water(methods: list[dict[str, Any]], **log: Any) -> Scenario:
+    """A ship that turns through moving water, with a log along its axes."""
+    reference = {"frame": "body", "drift_mps": 0.02, **log}
+    return scenario(run={"duration_h": 8.0}, motion=TURNING, reference=reference, method=methods)
+
+
+def test_it_estimates_the_current_and_the_scale_that_it_is_told_of() -> None:
+    """Without these states it takes both for errors of the navigation, and loses to a network."""
+    damped = {"damping": "external", "network": {"id": "classic2"}}
+    methods = [
+        KALMAN,
+        KALMAN | {"name": "water", "kalman": WATER},
+        KALMAN | {"name": "both", "kalman": WATER | SCALE},
+        damped,
+    ]
+    found = simulate(through_water(methods, current_mps=(0.4, -0.3), scale_ppm=8000.0)).methods
+    plain_m, water_m, both_m, damped_m = (one.errors["position_m"]["rms"] for one in found)
+    assert plain_m > damped_m > 2.0 * max(water_m, both_m)
+    run, _ = filtered_linear(
+        ship := through_water(methods[2:3], current_mps=(0.4, -0.3), scale_ppm=8000.0),
+        ship.method[0], environment(ship), np.zeros(7),
+    )  # fmt: skip
+    while not run.advance(100_000):
+        pass
+    at = [*run.model.axis].index(8)
+    east, north, scale = run.filter.sensors[at : at + 3]
+    sigma = np.sqrt(np.diag(run.filter.P)[7 + at : 10 + at])
+    assert (sigma < 0.5 * np.array([0.4, 0.4, 8e-3])).all(), "it has learnt of each"
+    assert (np.abs([east - 0.4, north + 0.3, scale - 8e-3]) < 3.0 * sigma).all()
+
+
+def test_its_covariance_holds_for_currents_and_scales_as_it_is_told() -> None:
+    generator = np.random.default_rng(7)
+    squares = []
+    for seed in range(24):
+        current, scale = 0.4 * generator.standard_normal(2), 8000.0 * generator.standard_normal()
+        ship = through_water(
+            [KALMAN | {"kalman": WATER | SCALE}], current_mps=tuple(current), scale_ppm=scale
+        )
+        run = ship.run.model_copy(update={"seed": seed, "duration_h": 4.0, "step_s": 5.0})
+        (one,) = simulate(ship.model_copy(update={"run": run})).methods
+        assert one.sigma is not None
+        squares.append((one.rows[-1, :7] / one.sigma[-1]) ** 2)
+    mean = np.mean(squares, axis=0)  # of 24 chi squares: within 0.5 and 1.75 with 98 % each
+    assert (mean > 0.4).all() and (mean < 2.0).all(), mean
+
+
+def test_what_it_is_told_further_changes_no_other_filter() -> None:
+    before, after = (
+        simulate(through_water([KALMAN | block], current_mps=(0.2, 0.1))).methods[0].rows
+        for block in ({}, {"kalman": {"current_std_mps": 0.0, "scale_std_ppm": 0.0}})
+    )
+    np.testing.assert_array_equal(before, after)
+
+
+def test_a_design_offers_it_where_the_water_moves() -> None:
+    still, moving = through_water([KALMAN]), through_water([KALMAN], tide_mps=(0.6, 0.0), scale_ppm=-5000.0)
+    assert [one.name for one in kalman(still)] == ["kalman"]
+    (_, told) = kalman(moving)
+    assert told.settings.current_std_mps == pytest.approx(0.3) and told.settings.scale_std_ppm == 5000.0
+    assert told.settings.current_tau_s == 20_000.0
+    assert kalman(through_water([KALMAN], current_mps=(0.3, 0.4)))[1].settings.current_tau_s == 1e6
+
+
+def test_its_budget_is_that_of_seeds() -> None:
+    found = budget(
+        through_water([KALMAN, KALMAN | {"name": "water", "kalman": WATER}], current_mps=(0.4, -0.3)), seeds=8
+    )
+    assert [one.shown for one in found.methods] == ["covariance", "seeds"]
 
 
 def test_the_log_out_of_service_lets_the_covariance_grow() -> None:

@@ -8,12 +8,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navcore.damping.kalman import KalmanSettings
 from navcore.engine.drivers.common import law_of, network_of, seen_by
 from navcore.engine.environment import Environment
 from navcore.foundation.earth import Earth, attitude_matrix
 from navcore.foundation.text import Text
+from navcore.foundation.units import PPM
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
-from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, FilterState, filter_state
+from navcore.mechanization.kalman.filter import (
+    ACCEL,
+    GYRO,
+    LOG,
+    SCALE,
+    WATER,
+    FilterModel,
+    FilterState,
+    filter_state,
+)
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.truth import HEADING, PITCH, ROLL, Truth
@@ -49,16 +60,19 @@ NOTHING_RANDOM = Text(
 
 
 def filter_model(
-    scenario: Scenario, step_s: float, true_row: np.ndarray, moored: np.ndarray
+    scenario: Scenario, method: Method, step_s: float, true_row: np.ndarray, moored: np.ndarray
 ) -> tuple[FilterModel, np.ndarray, tuple[str, ...]]:
     """Return the filter's model and its covariance at t = 0: the stochastic model of the scenario.
 
-    Scale factors, current, tide, delay and events are not in it (theory.md 16).
+    Scale factors of the IMU, delay and events are not in it; the water and the scale of the log are where the
+    method states how large they may be (theory.md 16).
 
     Parameters
     ----------
     scenario : Scenario
         With a simulated log and IMU.
+    method : Method
+        With a Kalman filter.
     step_s : float
         Time between two steps of the filter, s.
     true_row : ndarray, shape (15,)
@@ -75,7 +89,7 @@ def filter_model(
         What the user should know.
     """
     known = stochastic_model(scenario)
-    axis, left, drive, start = _sensor_states(known, step_s)
+    axis, left, drive, start = _sensor_states(known, method.settings, step_s)
     figures = known.figures
     model = FilterModel(
         axis=np.array(axis, dtype=np.int64),
@@ -100,7 +114,7 @@ def filter_model(
 
 
 def _sensor_states(
-    known: StochasticModel, step_s: float
+    known: StochasticModel, told: KalmanSettings, step_s: float
 ) -> tuple[list[int], list[float], list[float], list[float]]:
     """Axis, share left by a step, variance added by it and standard deviation at t = 0 of each state."""
     axis: list[int] = []
@@ -116,10 +130,13 @@ def _sensor_states(
             drive.append(float(deviations[i]) ** 2 * (1.0 - share * share))
             start.append(float(deviations[i]))
 
+    water = Drift(told.current_std_mps, told.current_tau_s)
     for first, drift, bias in (
         (GYRO, known.gyro_drift, known.gyro_bias),
         (ACCEL, known.accel_drift, known.accel_bias),
         (LOG, known.log_drift, known.log_bias),
+        (WATER, water, np.zeros(2)),
+        (SCALE, Drift(0.0, 1.0), np.array([told.scale_std_ppm * PPM])),
     ):
         add(first, np.full(len(bias), drift.sigma), drift)
         add(first, bias, None)
@@ -138,7 +155,7 @@ def filtered_linear(
     Runs that are given the same ``gains``, one after the other, share those that the first one computes.
     """
     run, truth = scenario.run, env.truth_half.values
-    model, P, notices = filter_model(scenario, run.step_s, truth[0], env.reference.moored)
+    model, P, notices = filter_model(scenario, method, run.step_s, truth[0], env.reference.moored)
     recorder = make_recorder(env.steps, run.step_s, run.output_step_s, env.coefficients.axes)
     kept, known = None, False
     if gains is not None:
@@ -171,7 +188,7 @@ def filtered_strapdown(
     from navcore.mechanization.strapdown import start_run, velocity_reference
 
     interval_s, truth = env.sampling.law_step_s, env.truth.values
-    model, P, notices = filter_model(scenario, interval_s, truth[0], env.reference.moored)
+    model, P, notices = filter_model(scenario, method, interval_s, truth[0], env.reference.moored)
     law = law_of(method, network_of(scenario, method), interval_s)
     free = start_run(env.start, settings, scenario.earth, law, truth, before=env.imu.before())
     log = velocity_reference(seen_by(method, env.reference), env.truth)

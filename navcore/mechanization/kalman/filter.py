@@ -15,8 +15,9 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.mechanization.error_model import STATES, Held, runge_kutta
 from navcore.mechanization.recorder import Errors
 
-GYRO, ACCEL, LOG, AXES = 0, 3, 6, 8
-"""First axis of each sensor among the axes of all: three gyros, three accelerometers, two of the log."""
+GYRO, ACCEL, LOG, WATER, SCALE, AXES = 0, 3, 6, 8, 10, 11
+"""First axis of each sensor among the axes of all: three gyros, three accelerometers, two of the log; the
+velocity of the water, east and north, and the scale error of the log."""
 INPUTS = 5
 """Sensor errors of the error model: eps in E, N, U, nabla in E, N."""
 
@@ -147,8 +148,16 @@ def fill_turn(pitch, roll, heading, turn):
 
 
 @inlined
-def log_axis(model, turn, channel, axis):
-    """Component in E (channel 0) or N (1) of an axis of the log: east, north or starboard, forward."""
+def log_share(model, turn, channel, axis, v_e, v_n):
+    """What a unit of a state of the log adds to its error in E (channel 0) or N (1).
+
+    Its axes are east, north or starboard, forward. The velocity of the water is missing in what it reads; a
+    scale error adds its part of the velocity.
+    """
+    if axis >= SCALE:
+        return v_e if channel == 0 else v_n
+    if axis >= WATER:
+        return -1.0 if channel == axis - WATER else 0.0
     if not model.body_frame:
         return 1.0 if channel == axis - LOG else 0.0
     size = math.hypot(turn[0, 1], turn[1, 1])
@@ -220,7 +229,7 @@ def update(model, epoch, d_e, d_n, v_e, v_n, f):
             seen[6] = -v_n if channel == 0 else v_e
         for i in range(n - STATES):
             if model.axis[i] >= LOG and not moored:
-                share = log_axis(model, f.turn, channel, model.axis[i])
+                share = log_share(model, f.turn, channel, model.axis[i], v_e, v_n)
                 seen[STATES + i] = -share
                 innovation += share * f.sensors[i]
         if f.known:
