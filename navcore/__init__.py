@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from navcore.engine.run import MethodRun, Run
     from navcore.engine.simulation import simulate
     from navcore.engine.verification import Verification, verify
+    from navcore.extending.c_law import c_law
     from navcore.extending.register import register
     from navcore.foundation.errors import Fault, InputError
     from navcore.foundation.version import __version__
@@ -63,6 +64,7 @@ __all__ = [
     "Why",
     "__version__",
     "budget",
+    "c_law",
     "designs",
     "load",
     "metrics",
@@ -93,6 +95,7 @@ _HOME = {
     "metrics": "engine.measures",
     "parse_network": "networks",
     "presets": "scenario.file",
+    "c_law": "extending.c_law",
     "register": "extending.register",
     "simulate": "engine.simulation",
 }

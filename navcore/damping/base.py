@@ -22,9 +22,9 @@ from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.known import transfer_at
 from navcore.networks.undamped import UndampedNetwork
 
-Carrying = Literal["law", "copies", "filter"]
-"""How the engine carries a method out: one navigation with the damping law, averaged copies of a free one, or
-a free one that a Kalman filter corrects."""
+Carrying = Literal["law", "copies", "filter", "user"]
+"""How the engine carries a method out: one navigation with the damping law, averaged copies of a free one, a
+free one that a Kalman filter corrects, or one with a law of the user's own."""
 Covering = Literal["covariance", "seeds", "filter"]
 """Where the error budget comes from: the covariance of the loop, an ensemble of seeds, or the covariance that
 a Kalman filter keeps itself."""

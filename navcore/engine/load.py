@@ -36,10 +36,12 @@ class _Cost:
     method: dict[Carrying, float]
 
 
-_LINEAR_BYTES = _Cost(60.0, 75.0, 650.0, {"law": 0.0, "copies": 180.0, "filter": 0.0})
-_STRAPDOWN_BYTES = _Cost(60.0, 0.0, 140.0, {"law": 0.0, "copies": 60.0, "filter": 0.0})
-_LINEAR_S = _Cost(0.15e-6, 0.2e-6, 1.2e-6, {"law": 0.16e-6, "copies": 0.66e-6, "filter": 5.16e-6})
-_STRAPDOWN_S = _Cost(30e-9, 5e-9, 10e-9, {"law": 40e-9, "copies": 200e-9, "filter": 90e-9})
+_LINEAR_BYTES = _Cost(60.0, 75.0, 650.0, {"law": 0.0, "copies": 180.0, "filter": 0.0, "user": 0.0})
+_STRAPDOWN_BYTES = _Cost(60.0, 0.0, 140.0, {"law": 0.0, "copies": 60.0, "filter": 0.0, "user": 0.0})
+_LINEAR_S = _Cost(
+    0.15e-6, 0.2e-6, 1.2e-6, {"law": 0.16e-6, "copies": 0.66e-6, "filter": 5.16e-6, "user": 10e-6}
+)
+_STRAPDOWN_S = _Cost(30e-9, 5e-9, 10e-9, {"law": 40e-9, "copies": 200e-9, "filter": 90e-9, "user": 10e-6})
 """Of one IMU sample."""
 _ROW_S = 0.3e-6
 _WORKERS = 2

@@ -31,6 +31,9 @@ def form_of(subject: Subject, outside: bool = False) -> Form:
 
 def _refuse_added(method: Method) -> None:
     """Refuse a policy or switching method that came from outside the program: its source is not read."""
+    if method.kind.carrying == "user":
+        allowed = Text("is from outside the program: a law with it cannot be exported")
+        raise InputError(Fault("", "damping", method.damping, allowed))
     for name, kinds in (("policy", POLICIES), ("switching", SWITCHINGS)):
         id = getattr(method, name).id
         if method.kind.carrying == "law" and id not in kinds.own:

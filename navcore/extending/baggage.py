@@ -15,7 +15,7 @@ from navcore.foundation.registry import place_of
 from navcore.foundation.text import Text
 
 Baggage = tuple[tuple[str, str, str], ...]
-"""Each of a kind ("file" or "import"), a path or the place to import from, and the file's text."""
+"""Each of a kind ("file", "c" or "import"), a path or the place to import from, and the text or the id."""
 _taken: set[str] = set()
 
 
@@ -30,6 +30,9 @@ def baggage() -> Baggage:
     files = tuple(("file", path, text) for path, text in brought().items())
     others: dict[str, None] = {}
     for one in ADDED:
+        if path := getattr(one.thing, "c_file", ""):
+            files = (*files, ("c", path, one.name))
+            continue
         whole = isinstance(one.thing, ModuleType)
         module = one.thing.__name__ if whole else one.thing.__module__
         if module == "__main__":
@@ -74,6 +77,8 @@ def unpack(given: Baggage) -> None:
         if kind == "file":
             if faults := load_text(name, text):
                 raise InputError(faults)
+        elif kind == "c":
+            navcore.register(navcore.c_law(name, id=text))
         else:
             module, _, attribute = name.partition(":")
             try:

@@ -59,11 +59,25 @@ def name_plugin(path: str) -> None:
 
 def load_file(path: str | Path) -> tuple[Fault, ...]:
     """Run a file that registers methods; return what is wrong with it."""
+    if Path(path).suffix == ".c":
+        return _load_c(path)
     try:
         text = Path(path).read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         return (Fault(str(path), "", None, Text("cannot be read: {error}", error=str(error))),)
     return load_text(str(Path(path).resolve()), text)
+
+
+def _load_c(path: str | Path) -> tuple[Fault, ...]:
+    """Register the law in a C file, under the name of the file."""
+    from navcore.extending.c_law import c_law
+
+    with collected() as faults:
+        try:
+            navcore.register(c_law(path))
+        except InputError as error:
+            faults += error.faults
+    return tuple(faults)
 
 
 def load_text(path: str, text: str) -> tuple[Fault, ...]:

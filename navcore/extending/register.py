@@ -8,6 +8,7 @@ from pydantic.fields import FieldInfo
 
 from navcore.damping import KINDS
 from navcore.damping.base import Carrying, Covering, Damping
+from navcore.damping.user import damping_of
 from navcore.extending.added import ADDED, COLLECTED, Added
 from navcore.extending.baggage import packed
 from navcore.foundation import guarded
@@ -19,6 +20,7 @@ from navcore.foundation.registry import Registry, place_of, same_class
 from navcore.foundation.text import Text
 from navcore.io.formats import FORMATS
 from navcore.law.added_code import room_faults
+from navcore.law.hosted import UserLaw
 from navcore.law.policy import POLICIES, PolicyParameters
 from navcore.law.switching import SWITCHINGS, SwitchingParameters
 from navcore.motion import MOTIONS, MotionParameters
@@ -231,11 +233,25 @@ def _add_format(thing: Any) -> str:
     return name
 
 
+def _law_lacks(thing: Any) -> Iterator[str]:
+    yield from _unwritten(thing)
+    yield from (
+        _damping_lacks(damping_of(thing))
+        if isinstance(getattr(thing, "id", None), str)
+        else (Text("must have {name}: a text", name="id"),)
+    )
+
+
+def _add_law(thing: type[UserLaw]) -> str:
+    return _add_damping(damping_of(thing))
+
+
 _KINDS = (
     _Kind("network", NetworkParameters, _network_lacks, _entry(NETWORKS)),
     _Kind("policy", PolicyParameters, _policy_lacks, _entry(POLICIES)),
     _Kind("switching method", SwitchingParameters, _switching_lacks, _entry(SWITCHINGS)),
     _Kind("motion", MotionParameters, _unwritten, _entry(MOTIONS)),
+    _Kind("law", UserLaw, _law_lacks, _add_law),
     _Kind("kind of damping", Damping, _damping_lacks, _add_damping),
     _Kind("sensor error", ImuTerm, _term_lacks(Imu, imu_errors.TERMS), _term(Imu, imu_errors.TERMS)),
     _Kind("log error", LogTerm, _term_lacks(Reference, log_errors.TERMS), _term(Reference, log_errors.TERMS)),

@@ -52,9 +52,18 @@ def remake(touched: list[type[BaseModel]]) -> None:
         held = {one for info in _infos(model) for one in _held(info.annotation)}
         if model in waiting or held & waiting:
             waiting.add(model)
+            for info in _infos(model):
+                if type(info.default) in waiting:
+                    info.default = _anew(info.default)
             model.model_rebuild(force=True)
     for forget in _CHANGED:
         forget()
+
+
+def _anew(default: Any) -> Any:
+    """Make a default that was made before its model has changed."""
+    given = {name: getattr(default, name) for name in default.model_fields_set}
+    return type(default)(**given)
 
 
 def _infos(model: type[BaseModel]) -> Iterator[FieldInfo]:

@@ -24,17 +24,20 @@ from navcore.engine.drivers.common import (
     watches,
 )
 from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
+from navcore.engine.drivers.user import UserRun, hosted
 from navcore.engine.environment import Environment, environment
 from navcore.engine.run import MethodRun, Run, Status, in_places
 from navcore.foundation.text import Text
+from navcore.law.hosted import Start
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
 from navcore.mechanization.recorder import make_recorder, output_steps
+from navcore.motion.truth import LAT, VE, VN
 from navcore.scenario.file import scenario_hash
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
-_Started = ErrorModelRun | AveragedErrorModel | FilteredErrorModel
+_Started = ErrorModelRun | AveragedErrorModel | FilteredErrorModel | UserRun
 CHUNK = 50_000
 """Steps between two looks at the cancel flag, some 10 ms."""
 
@@ -185,7 +188,10 @@ def carried_out(
     else:
         run, notices = filtered_linear(scenario, method, env, state, gains)
     run.recorder.spans[:] = requirement_spans(scenario, scenario.run.step_s)
-    return run, notices, *_carry_out(run, report, cancelled)
+    status, reason = _carry_out(run, report, cancelled)
+    if shared := getattr(run, "shared_state", ""):
+        notices = (*notices, shared)
+    return run, notices, status, reason
 
 
 def _damped(
@@ -208,9 +214,22 @@ def _damped(
     return run, ()
 
 
+def _by_user(
+    scenario: Scenario, method: Method, env: Environment, state: np.ndarray
+) -> tuple[_Started, tuple[str, ...]]:
+    """Run of one navigation with a law of the user's own."""
+    run, notices = _damped(scenario, method, env, state)
+    true = env.truth_half.values[0]
+    at = Start(
+        float(true[LAT] + state[2]), float(true[VE] + state[0]), float(true[VN] + state[1]), run.step_s
+    )
+    run.law, host = hosted(scenario, method, run.step_s, at)
+    return UserRun(run, host), notices
+
+
 _STARTS: dict[
     Carrying, Callable[[Scenario, Method, Environment, np.ndarray], tuple[_Started, tuple[str, ...]]]
-] = {"law": _damped, "copies": averaged_linear, "filter": filtered_linear}
+] = {"law": _damped, "copies": averaged_linear, "filter": filtered_linear, "user": _by_user}
 """How a method starts, and what the user should know, by the way it is carried out."""
 
 
@@ -220,6 +239,8 @@ def _carry_out(run: _Started, report: Progress, cancelled: Cancelled | None) -> 
         report(run.position / max(run.steps, 1))
         if cancelled is not None and cancelled():
             return "stopped", STOPPED
+    if fault := getattr(run, "fault", ""):
+        return "stopped", fault
     if run.diverged:
         return (
             "diverged",

@@ -22,8 +22,10 @@ from navcore.engine.drivers.common import (
     stability_of,
 )
 from navcore.engine.drivers.kalman import filtered_strapdown, own_sigma
+from navcore.engine.drivers.user import UserRun, hosted
 from navcore.engine.run import MethodRun, Run, Status, in_places
 from navcore.engine.strapdown_environment import StrapdownEnvironment, strapdown_environment
+from navcore.law.hosted import Start
 from navcore.mechanization.recorder import output_steps
 from navcore.mechanization.strapdown import Settings, StrapdownRun, start_run, velocity_reference
 from navcore.mechanization.strapdown.drive import drive
@@ -114,10 +116,21 @@ def _damped(
     return run, ()
 
 
-_Started = StrapdownRun | AveragedStrapdown
+def _by_user(
+    scenario: Scenario, method: Method, env: StrapdownEnvironment, settings: Settings
+) -> tuple[UserRun, tuple[str, ...]]:
+    """Run of one navigation with a law of the user's own."""
+    run, notices = _damped(scenario, method, env, settings)
+    v_e, v_n, _ = env.start.velocity
+    at = Start(env.start.lat, float(v_e), float(v_n), env.sampling.law_step_s)
+    run.law, host = hosted(scenario, method, env.sampling.law_step_s, at)
+    return UserRun(run, host), notices
+
+
+_Started = StrapdownRun | AveragedStrapdown | UserRun
 _STARTS: dict[
     Carrying, Callable[[Scenario, Method, StrapdownEnvironment, Settings], tuple[_Started, tuple[str, ...]]]
-] = {"law": _damped, "copies": averaged_strapdown, "filter": filtered_strapdown}
+] = {"law": _damped, "copies": averaged_strapdown, "filter": filtered_strapdown, "user": _by_user}
 """How a method starts, and what the user should know, by the way it is carried out."""
 
 
@@ -130,7 +143,11 @@ def _finish(
 ) -> MethodRun:
     status: Status = "ok"
     reason = run.reason
-    if run.diverged:
+    if shared := getattr(run, "shared_state", ""):
+        notices = (*notices, shared)
+    if fault := getattr(run, "fault", ""):
+        status, reason = "stopped", fault
+    elif run.diverged:
         status = "diverged"
     elif run.position < run.settings.samples:
         status, reason = "stopped", STOPPED
