@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
     from navcore.engine.run import MethodRun, Run
 
+VOYAGE = "voyage.toml"
+"""Origin of a scenario that was made like a recorded voyage."""
 UPLOADED = "uploaded"
 """Stands for the uploaded recordings in the scenario chooser, and for the uploaded study in its own."""
 SCENARIO, METRICS = "scenario.toml", "metrics.json"
@@ -175,6 +177,23 @@ class Opening:
             changed, notes = own_scenario(session.uploads, roles)
             session.change(changed, None, origin=UPLOADED)
             notices.tell(self._client, Text("My ship's INS"), notes, "info")
+
+    def sail_like(self) -> None:
+        """Open a simulated voyage like the recorded one of the scenario."""
+        from navcore.fitting.voyage import voyage_like
+
+        session = self._session
+        title = Text("No voyage can be made of these recordings; nothing was changed")
+        with session.lock, notices.told(self._client, title, self._refresh):
+            found = voyage_like(session.scenario)
+            opened = found.scenario
+            session.change(opened, None, origin=VOYAGE, selected=first_editable(opened))
+            told = Text(
+                "{legs} legs; at the end they are {end:.0f} m from the track. Choose an IMU in Sensors.",
+                legs=found.legs,
+                end=found.end_m,
+            )
+            notices.tell(self._client, Text("A voyage like mine"), [told], "info")
 
     def forget_files(self) -> None:
         """Remove the uploaded files, unless the scenario runs on them."""

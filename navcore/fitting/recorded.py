@@ -20,6 +20,7 @@ from navcore.scenario.model import Scenario
 from navcore.sensors.log_files import log_recording
 from navcore.sensors.reference import Reference
 
+_LARGEST_SCALE = 0.3
 _SPEEDS = {"water": Text("the speed through the water"), "ground": Text("the speed over ground")}
 
 
@@ -225,6 +226,12 @@ def reference_of(fit: LogErrorFit) -> Reference:
         "delay_s": _rounded(max(fit.late_s, 0.0)),
         "rate_hz": _rounded(fit.rate_hz),
     }
+    if fit.scale is not None and abs(fit.scale.value) > _LARGEST_SCALE:
+        allowed = Text(
+            "gives {scale:+.0%} of the changes of speed that the track has: that is no scale error of a log",
+            scale=1.0 + fit.scale.value,
+        )
+        raise InputError(Fault("", "reference.file", None, allowed))
     if fit.scale is not None:
         given["scale_ppm"] = _rounded(fit.scale.value / PPM)
     if fit.current is not None:

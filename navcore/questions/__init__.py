@@ -21,6 +21,7 @@ QUESTIONS: dict[str, type[Question]] = registry(
     "navcore.questions.detect:DetectQuestion",
     "navcore.questions.suffice:SufficeQuestion",
     "navcore.questions.fit:FitQuestion",
+    "navcore.questions.voyage:VoyageQuestion",
     "navcore.questions.report:ReportQuestion",
     "navcore.questions.study:StudyQuestion",
     "navcore.questions.sweep:SweepQuestion",

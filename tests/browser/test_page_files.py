@@ -106,6 +106,15 @@ def test_my_ships_ins_is_damped_by_one_button(
     assert [one.method.name for one in session.run.lines][:2] == ["as recorded", "unity2"]
     fresh.choose("best by", "largest heading error")
     fresh.page.locator(".sb-note").filter(has_text="largest heading error").wait_for()
+    with fresh.page.expect_download() as given:
+        fresh.button("Download the damped output").click()
+    assert given.value.suggested_filename == "damped-phins.csv"
+    damped, own = Path(given.value.path()).read_text(), Path(files["ins"]).read_text()
+    assert damped.split("\n", 1)[0] == own.splitlines()[0] and damped.count("\n") == own.count("\n")
+    with fresh.next_run():
+        fresh.button("A voyage like mine").click()
+    assert "legs; at the end" in fresh.notice("A voyage like mine")
+    assert session.scenario.motion.kind == "legs" and session.scenario.reference.kind == "log"
 
 
 @pytest.fixture

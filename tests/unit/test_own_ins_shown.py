@@ -23,6 +23,9 @@ from schuler_bench.shell.opening import as_json
 from schuler_bench.views.errors.figure import error_plots
 from schuler_bench.views.errors.view import legend_html
 from schuler_bench.views.metrics.table import metrics_html
+from schuler_bench.views.scene.graticule import needed
+from schuler_bench.views.scene.moment import pendulum, pendulum_svg
+from schuler_bench.views.scene.track import track
 from schuler_bench.views.spectrum.figure import spectrum
 from schuler_bench.views.strip.view import strip_html
 from tests.own_ins import on_ins
@@ -70,6 +73,16 @@ def test_the_ins_as_recorded_stands_first_in_every_picture(run: Run) -> None:
     assert metrics_html(run.with_recorded).index("as recorded") < metrics_html(run.with_recorded).index(
         "unity2"
     )
+
+
+def test_what_no_reference_tells_is_left_out_of_the_3d_view(run: Run) -> None:
+    assert run.against is not None and "phi_e_rad" in run.against.not_known
+    assert pendulum(run, 3600.0).bobs == ()
+    assert "nan" not in pendulum_svg(pendulum(run, 3600.0))
+    for one in track(run).methods:
+        assert np.isfinite(one.points).all() and len(one.points) > 100
+    line = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.0, 0.0], [np.nan, 0.0, 0.0]])
+    assert needed(line, 0.1).tolist() == [0, 1, 2]
 
 
 def test_a_window_and_a_pin_measure_the_ins_as_recorded_too(run: Run) -> None:

@@ -18,6 +18,11 @@ _TOLD = Text(
 )
 _GIVE = Text("Download the damped output")
 _GIVE_HINT = Text("The INS's own files, with what the method of the sentence above would have given out.")
+_SAIL = Text("A voyage like mine")
+_SAIL_HINT = Text(
+    "A simulated voyage with the legs of this one and a log that errs like yours, on which methods can be "
+    "designed and tuned. The sensors are those that you choose then; Undo brings the recording back."
+)
 _EXCHANGE = Text("The other way round: output and reference exchanged.")
 
 
@@ -57,6 +62,10 @@ class OwnIns:
             _GIVE, color="gray", order=order + 0.7, visible=False, hint=_GIVE_HINT
         )
         self._give.on_click(lambda _: self._give_damped())
+        self._sail: Any = gui.add_button(
+            _SAIL, color="gray", order=order + 0.8, visible=False, hint=_SAIL_HINT
+        )
+        self._sail.on_click(lambda _: self._frame.opening.sail_like())
         self._exchange.on_update(if_user(self.follow))
         self._judge.on_update(if_user(self._say))
         self._damp.on_click(lambda _: self._frame.opening.damp_ins(self._roles()))
@@ -102,5 +111,5 @@ class OwnIns:
         told = run is not None and run.against is not None
         self._judge.visible = told
         said = sentence(run, self._key) if run is not None and told else ""
-        self._give.visible = bool(said)
+        self._give.visible = self._sail.visible = bool(said)
         self._sentence.content = notices.note((said,), "info") if said else ""

@@ -33,12 +33,12 @@ def needed(points: np.ndarray, tolerance: float) -> np.ndarray:
     Returns
     -------
     ndarray of int, shape (n,)
-        Rising, the first and the last point included.
+        Rising, the first and the last known point included.
     """
-    count = len(points)
-    if count < 3:
-        return np.arange(count)
-    numbered = np.column_stack([points[:, :2], np.arange(count)])
+    known = np.flatnonzero(np.isfinite(points).all(axis=1))
+    if len(known) < 3:
+        return known
+    numbered = np.column_stack([points[known, :2], known])
     line = shapely.simplify(shapely.linestrings(numbered), tolerance, preserve_topology=False)
     return shapely.get_coordinates(line, include_z=True)[:, 2].astype(int)
 

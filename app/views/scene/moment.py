@@ -79,13 +79,13 @@ def pendulum(run: Run, t_s: float) -> Pendulum:
     peak = max((_peak(m) for m in run.methods if m.status != "diverged"), default=0.0)
     peak = peak or max((_peak(m) for m in run.methods), default=0.0)
     factor = round_down(_WIDEST / peak, _FACTORS) if 0.0 < peak < _WIDEST else 1.0
-    bobs = tuple(_bob(method, t_s, period) for method in run.methods)
+    bobs = tuple(bob for method in run.methods if len((bob := _bob(method, t_s, period)).trail))
     return Pendulum(bobs, factor, period, _plane([bob.trail for bob in bobs]))
 
 
 def _plane(trails: list[np.ndarray]) -> tuple[float, float]:
     """Direction (east, north) in which bobs swung most: the larger principal axis of their ways."""
-    points = np.vstack(trails)
+    points = np.vstack([np.empty((0, 2)), *trails])
     points = points[np.isfinite(points).all(axis=1)]
     if not len(points) or not np.any(points):
         return 1.0, 0.0
@@ -110,13 +110,15 @@ def plane_ends(plane: tuple[float, float]) -> tuple[str, str]:
 
 
 def _peak(method: MethodRun) -> float:
-    return max(method.errors[name]["max_abs"] for name in components(TILT))
+    known = [size for name in components(TILT) if math.isfinite(size := method.errors[name]["max_abs"])]
+    return max(known, default=0.0)
 
 
 def _bob(method: MethodRun, t_s: float, period: float) -> Bob:
     first, last = np.searchsorted(method.t_s, [t_s - period, t_s])
     chosen = np.unique(np.linspace(first, max(last - 1, first), _TRAIL_POINTS).astype(int))
     trail = np.vstack([method.rows[chosen[chosen < len(method.rows)]], row_at(method.t_s, method.rows, t_s)])
+    trail = trail[np.isfinite(trail[:, [PHI_N, PHI_E]]).all(axis=1)]  # of an INS's output it may be unknown
     return Bob(style.method_color(method.place), trail[:, [PHI_N, PHI_E]] * (-1.0, 1.0))
 
 

@@ -323,7 +323,10 @@ def _errors(method: MethodRun, t_s: np.ndarray, peak_m: float) -> np.ndarray:
     if method.status == "diverged" and peak_m > 0.0:
         beyond = np.flatnonzero(~(np.hypot(error[:, 0], error[:, 1]) <= _CUT * peak_m))
         error = error[: beyond[0]] if len(beyond) else error
-    return error if len(error) else np.zeros((1, 2))
+    known = np.flatnonzero(np.isfinite(error).all(axis=1))
+    if not len(known):  # of an INS without a reference of its position
+        return np.zeros((1, 2))
+    return error[np.maximum(np.arange(known[-1] + 1), known[0])]
 
 
 def _exaggeration(track_half_m: float, peak_m: float) -> float:
