@@ -1,7 +1,7 @@
 """The pictures of README and docs, made from the real page: ``python -m tools.tour`` (``make tour``).
 
 Drives the dashboard in headless Chromium as a visitor would and writes ``docs/tour.webp``, 20 seconds with
-captions, ``docs/dashboard.png`` and ``docs/upload.png``.
+captions, ``docs/dashboard.png``, ``docs/upload.png`` and ``docs/export.png``.
 """
 
 import io
@@ -19,6 +19,7 @@ from tools.chromium import launched
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 TOUR, STILL, UPLOAD = DOCS / "tour.webp", DOCS / "dashboard.png", DOCS / "upload.png"
+EXPORT = DOCS / "export.png"
 RECORDINGS = DOCS.parent / "assets" / "recordings"
 WIDTH, HEIGHT, CAPTION_PX = 1280, 720, 52
 LARGEST_BYTES = 3_000_000
@@ -223,10 +224,23 @@ def make_tour(bench: Bench) -> None:
     print(f"{TOUR.name}: {len(take.frames)} pictures, {sum(take.lasts_ms) / 1e3:.1f} s, {size / 1e6:.2f} MB")
 
 
+def export(bench: Bench) -> None:
+    """Take a picture of the equations of a method, and of the form of its export."""
+    page = bench.page
+    bench.reset("zha-external", "Method", "Frequency", "Errors", selected=2)
+    page.get_by_text("Equations with these numbers").click()
+    page.get_by_text("Law for a navigation computer").click()
+    page.get_by_role("button", name="Download (ZIP)").scroll_into_view_if_needed()
+    rest(page)
+    page.screenshot(path=EXPORT, clip={"x": 0, "y": 104, "width": 325, "height": 976})
+    print(f"{EXPORT}: {EXPORT.stat().st_size / 1e6:.2f} MB")
+
+
 def main() -> None:
     """Make all pictures."""
     on_a_page((1920, 1080), still)
     on_a_page((1920, 1080), upload)
+    on_a_page((1920, 1080), export)
     on_a_page((WIDTH, HEIGHT - CAPTION_PX), make_tour)
 
 

@@ -1,7 +1,8 @@
 """Form of a question: a control for each of its fields; what is entered is kept with the display."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from navcore.foundation.errors import InputError
@@ -42,9 +43,17 @@ class QuestionForm:
         self._specs = [spec for spec in form.fields(question, (self._id,)) if str(spec.path[-1]) in shown]
         self._section = Section(frame.gui, container, self._edit, order)
 
-    def show(self, visible: bool = True) -> None:
-        """Show the controls with their values; none of them where not ``visible``."""
-        given = self.given()
+    def show(self, visible: bool = True, known: Mapping[str, Any] = MappingProxyType({})) -> None:
+        """Show the controls with their values; none of them where not ``visible``.
+
+        Parameters
+        ----------
+        visible : bool
+            The form is shown.
+        known : mapping of str to object
+            Values in force where none is given, by field.
+        """
+        given = {**known, **self.given()}
         values = {spec.path: given.get(str(spec.path[-1]), spec.default) for spec in self._specs}
         self._section.show(self._specs if visible else [], values, None)
 

@@ -119,7 +119,7 @@ def rounding_of(form: Form) -> Rounding:
     method = form.subject.method
     if method.kind.uses_network:
         discrete = discretise(form.subject.network, form.subject.step_s)
-        shift, direct = _pole_shift(discrete), _direct_radius(discrete)
+        shift, direct = pole_shift(discrete), direct_radius(discrete)
         if method.kind.uses_log:
             tilt, velocity = _in_the_loop(form, discrete, found[:, :2] - form.expected[:, :2])
     decisions = int(
@@ -171,7 +171,7 @@ def _interpreted(form: Form) -> np.ndarray:
     return np.array([law.step(row) for row in rows], dtype=float)
 
 
-def _pole_shift(discrete: DiscreteNetwork) -> float:
+def pole_shift(discrete: DiscreteNetwork) -> float:
     """Largest shift of a pole by rounding the transition matrix less the identity, of the pole's size."""
     if discrete.order == 0:
         return 0.0
@@ -181,7 +181,7 @@ def _pole_shift(discrete: DiscreteNetwork) -> float:
     return float(np.max(nearest / np.abs(exact)))
 
 
-def _direct_radius(discrete: DiscreteNetwork) -> float:
+def direct_radius(discrete: DiscreteNetwork) -> float:
     """Largest pole of the difference equation whose coefficients are rounded to single precision."""
     if discrete.order == 0:
         return 0.0

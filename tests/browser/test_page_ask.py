@@ -37,6 +37,7 @@ def test_a_method_is_downloaded_as_code_and_its_equations_are_copied(short: Benc
     page, session = short.page, short.session
     short.tab("Method")
     page.get_by_text("Law for a navigation computer").click()
+    assert short.value("rate of the law (Hz)") == 1.0 / session.scenario.law_step_s
     short.choose("as", "matlab")
     label = page.locator("label").get_by_text("name in the files", exact=True)
     box = label.locator("xpath=ancestor::div[.//input][1]").locator("input")

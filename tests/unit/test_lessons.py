@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from functools import lru_cache
 
+import numpy as np
 import pytest
 
 from navcore.averaging.parameters import Averaging
@@ -17,6 +18,7 @@ from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.motion.swing import Oscillation
 from navcore.networks import NETWORKS
+from navcore.networks.discrete import discretise
 from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
@@ -271,6 +273,22 @@ def test_the_numbers_are_those_of_the_physics() -> None:
     run = run_of(LESSONS[3].id, 1)
     assert named("loop.1.h0", run).value == pytest.approx(0.648, abs=1e-3)
     assert named("error.1.dvn.final", run).value == pytest.approx(-0.543 * 0.5, abs=1e-3)
+
+
+def test_the_direct_form_grows_as_the_lesson_says() -> None:
+    """An impulse through the difference equation with float32 coefficients, and its growth over 10 000 s."""
+    run = run_of(LESSONS[3].id, 3)
+    network, step_s = run.methods[0].network, run.scenario.run.step_s
+    assert network.id == "complementary" and step_s == 1.0
+    den = np.real(np.poly(np.eye(4) + discretise(network, step_s).dA)).astype(np.float32)
+    out = [1.0]
+    for _ in range(20_000):
+        out.append(-sum(float(c) * y for c, y in zip(den[1:], out[:-5:-1], strict=False)))
+    size = np.abs(np.array(out))
+    grown = math.log(size[19_000:].max() / size[9_000:10_001].max()) / 10_000.0
+    assert named("direct.0.growth", run).value == pytest.approx(1.0 / grown, rel=0.02)
+    assert named("direct.0.exact", run).value < 1.0 < named("direct.0.rounded", run).value
+    assert named("direct.0.kept", run).value < 1e-5
 
 
 @pytest.mark.parametrize(

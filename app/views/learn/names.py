@@ -16,6 +16,10 @@ number, and nothing in a lesson is evaluated as code. ``N`` stands for the numbe
 ``whole.N.days``, ``.slope``         e-folding time of the 24 h mode (days), growing or not; H'(0) (s)
 ``whole.N.slow``, ``.fastest``      damping ratio of the slow oscillation; time in which the fastest growing
                                     mode grows by e (h)
+``direct.N.exact``, ``.rounded``    largest pole of the discrete network; of its difference equation with
+                                    coefficients of single precision
+``direct.N.growth``, ``.kept``      time in which that one grows by e (s); shift of the poles, of their size,
+                                    where the change of the state is what is rounded
 ``error.N.Q.S``                     statistics of an error: Q a key of `navcore.quantities.ERRORS`, S of
                                     `STATISTICS`
 ``curve.N.Q.period``                twice the mean distance of its zero crossings (min)
@@ -41,13 +45,14 @@ from navcore.foundation.notation import with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG, HOUR
+from navcore.networks.discrete import discretise
 from navcore.quantities import ERRORS, TILT, VELOCITY, Kind
 
 _COLUMNS = {error.key: column for column, error in enumerate(ERRORS)}
 STATISTICS = {"max": "max_abs", "rms": "rms", "mean": "mean", "final": "final", "end": "final"}
 """Name -> statistic of a run; ``end`` is the magnitude of ``final``."""
 _MIN, _DAY = 60.0, 86400.0
-_LINE_DIGITS = 4
+_LINE_DIGITS, _POLE_DIGITS = 4, 7
 
 
 class Named(NamedTuple):
@@ -212,12 +217,27 @@ def _budget(what: str, number: int, run: Run) -> Named:
     return Named(100.0 * (own / total) ** 2, "%")
 
 
+def _direct(what: str, number: int, run: Run) -> Named:
+    from navcore.exporting.rounding import direct_radius, pole_shift
+
+    discrete = discretise(run.methods[number].network, run.scenario.law_step_s)
+    rounded = direct_radius(discrete)
+    exact = np.abs(np.linalg.eigvals(np.eye(discrete.order) + discrete.dA))
+    return {
+        "exact": Named(float(np.max(exact)), "", _POLE_DIGITS),
+        "rounded": Named(rounded, "", _POLE_DIGITS),
+        "growth": Named(run.scenario.law_step_s / math.log(rounded) if rounded > 1.0 else math.inf, "s"),
+        "kept": Named(pole_shift(discrete), ""),
+    }[what]
+
+
 _OF_METHOD: dict[str, Callable[[str, int, Run], Named]] = {
     "loop": _loop,
     "whole": _whole,
     "error": _error,
     "curve": _curve,
     "budget": _budget,
+    "direct": _direct,
 }
 
 

@@ -72,7 +72,7 @@ class TakingPanel:
 
     def follow(self) -> None:
         """Show the form and how far the export is; save the one that was asked for here."""
-        self._form.show()
+        self._form.show(known={"rate": 1.0 / self._session.scenario.law_step_s})
         self._controls.follow()
         asker = self._asker
         show_html(self._words, notices.note(asker.words, "warning"))
