@@ -65,6 +65,15 @@
     closing(made);
   }
 
+  // What is entered in a form of a dialog goes to the server as one command.
+  addEventListener("submit", (event) => {
+    const form = event.target.closest?.("form[data-send]");
+    if (!form) return;
+    event.preventDefault();
+    window.schuler.command(form.dataset.send, JSON.stringify(Object.fromEntries(new FormData(form))));
+    form.closest("dialog")?.close();
+  });
+
   // ------------------------------------------------------------ the tour
 
   const LOST_LOOKS = 4;

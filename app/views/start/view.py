@@ -1,14 +1,16 @@
-"""Start card with three doors, guided tour, scenarios and networks with pictures (start.js shows them)."""
+"""Start card with four doors, guided tour, scenarios and networks with pictures (start.js shows them)."""
 
 from functools import lru_cache
 
 from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
+from navcore.questions.design import DesignQuestion
 from navcore.scenario.file import load, presets
 from schuler_bench.editing import edits
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.start.cards import card, network_cards
+from schuler_bench.views.start.ship import SEND, TITLE, form_html, scenario_for
 
 START, TOUR, SCENARIOS, NETWORK_CARDS = "start", "tour", "scenarios", "networks"
 """Commands that show the card, the tour, and the two galleries."""
@@ -29,6 +31,13 @@ _DOORS = (
         Text(
             "Drop what your INS and your log recorded, NMEA 0183 or CSV: see what damping would have "
             "changed. Files stay on this server."
+        ),
+    ),
+    (
+        "door-limits",
+        TITLE,
+        Text(
+            "Name your sensors and your log, type your limits: see which damping meets them, and how often."
         ),
     ),
 )
@@ -97,7 +106,7 @@ class StartView(View):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         add, ask = frame.commands.register, frame.commands.ask_page
-        add(START, lambda _: ask("start", ""), Text("Start card: three ways to begin"), watcher=True)
+        add(START, lambda _: ask("start", ""), Text("Start card: four ways to begin"), watcher=True)
         add(TOUR, lambda _: ask("tour", ""), Text("Guided tour in six steps"), watcher=True)
         add(
             SCENARIOS,
@@ -112,6 +121,8 @@ class StartView(View):
         add("network", self._choose_network)
         add("door-swing", lambda _: self._swing())
         add("door-tune", lambda _: self._tune())
+        add("door-limits", lambda _: self._show(TITLE, form_html()))
+        add(SEND, self._find_designs)
         add("door-files", lambda _: ask("tab", Text("Files")))
 
     def build(self, tab: Tab) -> None:
@@ -209,6 +220,16 @@ class StartView(View):
         run("lesson", "show")
         self.frame.commands.ask_page("tab", Text("Learn"))
         self.session.after_run(lambda: run("play"))
+
+    def _find_designs(self, text: str) -> None:
+        """Open a ship with the entered sensors and limits, and have designs found for them."""
+        session = self.session
+        with session.lock, notices.told(self.frame.client, TITLE, self.frame.refresh):
+            scenario = scenario_for(text, session.scenario)
+            session.change(scenario, None, origin=TITLE, selected=0)
+            self.frame.show(budget="limits")
+            session.searches.asking["design"].begin(DesignQuestion(scenario=scenario))
+            self.frame.commands.ask_page("tab", Text("Design"))
 
     def _tune(self) -> None:
         self.frame.opening.choose_scenario("liu-networks")

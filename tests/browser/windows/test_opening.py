@@ -24,8 +24,8 @@ def test_a_newcomer_is_greeted_in_the_language_of_the_browser_and_can_change_it(
     visitor.language = language = page.evaluate("() => schuler.language")
     card = see(visitor, page.locator(CARD))
     assert not page.evaluate("look.veiled")
-    assert card.locator(".sb-door").count() == 3
-    for place in range(3):
+    assert card.locator(".sb-door").count() == 4
+    for place in range(4):
         read(visitor, card.locator(".sb-door").nth(place))
     page.keyboard.press("Escape")
     card.wait_for(state="detached")
@@ -73,6 +73,17 @@ def test_each_door_leads_to_what_it_says(window: Bench) -> None:
     see(window, page.locator(f"{CARD} [data-command=door-files]")).click()
     see(window, window.button("Upload a file"))
     window.settle()
+    links(window, "Start")
+    see(window, page.locator(f"{CARD} [data-command=door-limits]")).click()
+    form = see(window, page.locator("dialog form.sb-ship"))
+    form.locator("select").first.select_option("Honeywell HG9900")
+    form.locator("select").last.select_option("Teledyne RDI Explorer 1200")
+    see(window, form.locator("button")).click()
+    window.wait_until(lambda: window.session.scenario.imu.part == "Honeywell HG9900")
+    page.get_by_role("tab", name=window.said("Design"), exact=True, selected=True).wait_for()
+    search = window.session.searches.asking["design"]
+    window.wait_until(lambda: search.under_way is not None or search.result is not None)
+    search.cancel()
 
 
 def test_the_tour_has_six_steps_beside_what_they_speak_of(window: Bench) -> None:
