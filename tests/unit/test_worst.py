@@ -19,7 +19,7 @@ from navcore.analysis.worst_step import worst_step
 from navcore.design.worst.bounded import worst
 from navcore.design.worst.logs import steps
 from navcore.design.worst.played import silent
-from navcore.design.worst.rate import worst_within_rate
+from navcore.design.worst.rate import _solved, worst_within_rate
 from navcore.design.worst.result import Worst
 from navcore.design.worst.searched import Player
 from navcore.design.worst.written import FILE_KEYS, files_of, names_of
@@ -116,6 +116,22 @@ def test_a_bound_on_the_rate_is_the_linear_program_over_all_samples() -> None:
         error = np.interp(time_s[:-1], *nodes)
         assert np.abs(error).max() <= 1.0 and np.abs(np.diff(error)).max() <= rate * 15.0 * (1.0 + 1e-9)
         assert float(weights @ error) == pytest.approx(best, rel=2e-3)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_from_node_to_node_it_is_solved_as_by_a_general_solver(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    count, rate = int(generator.integers(2, 60)), float(10.0 ** generator.uniform(-3.0, 1.0))
+    time_s = np.cumsum(generator.uniform(0.1, 3.0, count))
+    weights = generator.normal(size=count) * (generator.random(count) < 0.8)
+    weights = np.cumsum(weights) if seed % 2 else weights
+    found = _solved(weights, time_s, rate)
+    step = rate * np.diff(time_s)
+    assert np.abs(found).max() <= 1.0 and (np.abs(np.diff(found)) <= step + 1e-12).all()
+    change = eye(count - 1, count, 1, format="csr") - eye(count - 1, count, format="csr")
+    rows, allowed = vstack([change, -change]), np.tile(step, 2)
+    best = -linprog(-weights, A_ub=rows, b_ub=allowed, bounds=(-1.0, 1.0)).fun
+    assert weights @ found == pytest.approx(best, rel=1e-9, abs=1e-12)
 
 
 def test_a_policy_is_searched_and_shows_what_was_found(tmp_path: Path) -> None:

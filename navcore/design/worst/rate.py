@@ -4,6 +4,8 @@ The unknowns are the log's errors at some of its epochs, linear in between: even
 the weight changes its sign and, once a first solution is there, further ones along its ramps.
 """
 
+import math
+
 import numpy as np
 
 _EVEN = 300
@@ -64,27 +66,37 @@ def _on_nodes(weights: np.ndarray, begin_s: np.ndarray, nodes: np.ndarray) -> np
     """Weights of the nodes for errors that are linear between them."""
     if len(nodes) == 1:
         return np.array([weights.sum()])
-    place = np.clip(np.searchsorted(nodes, np.arange(len(weights)), side="right") - 1, 0, len(nodes) - 2)
-    left, right = begin_s[nodes[place]], begin_s[nodes[place + 1]]
-    share = (begin_s - left) / (right - left)
-    before = np.bincount(place, weights * (1.0 - share), len(nodes))
-    return before + np.bincount(place + 1, weights * share, len(nodes))
+    sums, moments = np.add.reduceat(np.stack([weights, weights * begin_s]), nodes[:-1], axis=1)
+    later = (moments - sums * begin_s[nodes[:-1]]) / np.diff(begin_s[nodes])
+    return np.append(sums - later, 0.0) + np.append(0.0, later)
 
 
 def _solved(weights: np.ndarray, time_s: np.ndarray, rate: float) -> np.ndarray:
-    from scipy.optimize import Bounds, LinearConstraint, milp
-    from scipy.sparse import eye
+    """Values of the nodes that make the largest sum: the linear program, solved exactly from node to node.
 
-    count = len(weights)
-    if count == 1:
-        return np.sign(weights)
-    change = eye(count - 1, count, 1, format="csc") - eye(count - 1, count, format="csc")
-    step = rate * np.diff(time_s)
-    # without whole numbers it is the linear program, with rows that are bounded on both sides
-    found = milp(
-        -weights / np.max(np.abs(weights)),
-        constraints=LinearConstraint(change, -step, step),  # pyright: ignore[reportArgumentType]
-        bounds=Bounds(-1.0, 1.0),
-    )
-    assert found.x is not None, found.message
-    return np.clip(found.x, -1.0, 1.0)
+    Up to a node the largest sum is a concave function of the value there, linear between breakpoints. What
+    the rate allows moves those on either side of its maximum outwards. A weight adds a slope: breakpoints
+    pass to the other side until their changes of slope make up for it, and there is the new maximum.
+    Backwards, each value is as near to the maximum of its node as the rate allows.
+    """
+    steps = [*(rate * np.diff(time_s)).tolist(), 0.0]
+    below: list[tuple[float, float]] = []  # distance outwards from 0 less ``moved``, change of slope
+    above: list[tuple[float, float]] = []  # of both sides the innermost is the last
+    moved, best = 0.0, []
+    for weight, step in zip(weights.tolist(), steps, strict=True):
+        near, far, sign = (below, above, 1.0) if weight >= 0.0 else (above, below, -1.0)
+        left = abs(weight)
+        while left > 0.0:
+            stored, change = far.pop() if far else (math.inf, left)
+            outwards = min(stored + moved, 1.0)
+            part = min(left, change) if outwards < 1.0 else left
+            near.append((-outwards - moved, part))
+            if part < change and outwards < 1.0:
+                far.append((stored, change - part))
+            left -= part
+        best.append(min(max(-sign * (near[-1][0] + moved), -1.0), 1.0) if near else -sign)
+        moved += step
+    values = best[-1:]
+    for one, step in zip(best[-2::-1], steps[-2::-1], strict=True):
+        values.append(min(max(one, values[-1] - step), values[-1] + step))
+    return np.array(values[::-1])
