@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from navcore.foundation.errors import Fault, InputError
     from navcore.foundation.version import __version__
     from navcore.networks import parse_network
+    from navcore.networks.from_control import from_control
     from navcore.scenario.file import load, presets
     from navcore.scenario.model import Scenario
 
@@ -66,6 +67,7 @@ __all__ = [
     "budget",
     "c_law",
     "designs",
+    "from_control",
     "load",
     "metrics",
     "pareto",
@@ -91,6 +93,7 @@ _HOME = {
     "Verification": "engine.verification",
     "Why": "design.dominance",
     "__version__": "foundation.version",
+    "from_control": "networks.from_control",
     "load": "scenario.file",
     "metrics": "engine.measures",
     "parse_network": "networks",
@@ -120,3 +123,8 @@ def __getattr__(name: str) -> Any:
     if name in FUNCTIONS:
         return FUNCTIONS[name]
     raise AttributeError(f"module 'navcore' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """Public names, those that are loaded when they are used included."""
+    return [*__all__]

@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from navcore.analysis import Loop
 from navcore.analysis.whole_system import WholeSystem
 from navcore.engine.spans import Span
-from navcore.foundation.drawing import drawn
+from navcore.foundation.drawing import drawn, handed_over
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
+
+if TYPE_CHECKING:
+    import pyarrow
 
 _DAMPED, _XI = 1, 2
 RECORDED_PLACE = -1
@@ -291,6 +295,34 @@ class Run:
             There is no figure of this name, or nothing that it could show.
         """
         return drawn("run_figure", self, name, **options)
+
+    def to_arrow(self) -> pyarrow.Table:
+        """Return the output rows of all methods as a `pyarrow.Table`, columns as of ``--out``, SI."""
+        return handed_over("to_arrow", self)
+
+    def to_pandas(self) -> Any:
+        """Return the output rows as a `pandas.DataFrame`; raises `InputError` without pandas."""
+        return handed_over("to_pandas", self)
+
+    def to_xarray(self) -> Any:
+        """Return them as an `xarray.Dataset` over method and time; raises `InputError` without xarray."""
+        return handed_over("to_xarray", self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the output rows into one file.
+
+        Parameters
+        ----------
+        path : path
+            Ends with ``.mat`` (a structure for each method, with names that MATLAB takes), ``.parquet`` or
+            ``.csv``.
+
+        Raises
+        ------
+        InputError
+            It ends otherwise, or cannot be written.
+        """
+        handed_over("save", self, path)
 
 
 def plot_series(recorder: Recorder, step_s: float) -> PlotSeries:

@@ -8,9 +8,9 @@ and no kernel of the program is compiled anew (`navcore.law.added_code` compiles
 
 from typing import Any
 
-from llvmlite import ir
 from numba import extending, types
 from numba.core import cgutils
+from numba.core.cgutils import ir
 
 from navcore.foundation.compiled import inlined
 from navcore.foundation.records import COUNT, REAL, record_type
