@@ -28,6 +28,7 @@ _GUIDE = [
             "docs/networks",
             "docs/interface",
             "docs/extending",
+            "docs/stable",
             "docs/scale",
             "docs/teaching",
         ],

@@ -12,6 +12,7 @@ from scipy.io import loadmat
 import navcore
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
+from tools import stable
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +88,11 @@ def test_a_system_that_makes_no_network_is_refused(system: object, said: str) ->
 def test_dir_shows_the_public_names_alone() -> None:
     assert dir(navcore) == sorted(navcore.__all__)
     assert {"register", "simulate", "load", "Run"} <= {*dir(navcore)}
+
+
+def test_nothing_in_the_stable_interface_changes_unseen() -> None:
+    """After a change that is meant: ``python -m tools.stable``, and a line in the changelog."""
+    assert stable.PAGE.read_text("utf-8") == stable.text()
 
 
 def test_the_packages_say_that_they_are_typed(repo_root: Path) -> None:
