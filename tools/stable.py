@@ -12,8 +12,9 @@ import navcore
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "stable.md"
 _HEAD = """# Stable from 0.1
 
-These names of `navcore` keep their meaning and can be called as here from version 0.1 on. A name, parameter or
-default is taken away only after a release that warns of it; new parameters have defaults. All else may change.
+These names of `navcore` keep their meaning and can be called as here from version 0.1 on. A name, parameter
+or default is taken away only after a release that warns of it; new parameters have defaults. All else may
+change.
 `help(navcore.simulate)` explains a name; [extending.md](extending.md) says what a class of your own needs.
 
 ```text
