@@ -1,5 +1,6 @@
 """Units, logarithmic axis, cursor and export, as the user sees them."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,39 @@ def test_cursor_shows_values_in_all_plots_and_moves_the_ship(reading: Bench) -> 
         mouse.move(10, 10)
         reading.settle()
         page.wait_for_function(f"count => ({filled})() === count", arg=count)
+
+
+def test_a_second_cursor_gives_differences(reading: Bench) -> None:
+    page, mouse = reading.page, reading.page.mouse
+    chart = labelled(reading, "δVE")
+    plot = page.locator(".uplot .u-over").first
+    box: Any = plot.bounding_box()
+    y = box["y"] + 0.5 * box["height"]
+    page.keyboard.down("Shift")
+    mouse.click(box["x"] + 0.25 * box["width"], y)
+    page.keyboard.up("Shift")
+    count = page.locator(".uplot:visible").count()
+    assert page.locator(".sb-second").count() == count and chart
+    mouse.move(box["x"] + 0.74 * box["width"], y)
+    mouse.move(box["x"] + 0.75 * box["width"], y)
+    page.wait_for_function("() => document.querySelector('.sb-values')?.textContent.includes('Δ')")
+    told = page.evaluate(
+        """() => {
+          const all = Object.values(window.__viserTestpoints.uplots).map((entry) => entry.chart);
+          const chart = all.find(({ over }) => over.matches(':hover'));
+          const at = chart.cursor.idx, time = chart.data[0];
+          const line = parseFloat(chart.root.querySelector('.sb-second').style.left);
+          const other = chart.valToIdx(chart.posToVal(line, 'x'));
+          return [chart.data[1][at] - chart.data[1][other], time[at] - time[other],
+                  chart.root.querySelector('.sb-values').innerText];
+        }"""
+    )
+    difference, apart, words = told
+    numbers = [float(one) for one in re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", words)]
+    assert numbers[0] == pytest.approx(difference, rel=1e-2) and numbers[-1] == pytest.approx(apart, rel=1e-2)
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => document.querySelector('.sb-second') === null")
+    assert not page.locator(".sb-values").first.inner_text().startswith("Δ")
 
 
 @pytest.mark.parametrize(

@@ -153,7 +153,8 @@ class ErrorsView(PictureView[ErrorCurves]):
     place = "lower"
     group = "run"
     look_for = Text(
-        "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind."
+        "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind. "
+        "A click with Shift sets a second cursor: then the plots tell differences."
     )
     focus = "errors"
     plots = (*_KEYS, *_VERIFIED_KEYS)
