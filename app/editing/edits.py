@@ -140,6 +140,11 @@ def without_block(scenario: Scenario, path: Path) -> Scenario:
     return _with_blocks(scenario, path, lambda blocks: blocks[:-1])
 
 
+def with_list(scenario: Scenario, path: Path, blocks: list[Any]) -> Scenario:
+    """Put other blocks in the place of a list such as ``motion.leg``; raises `InputError`."""
+    return _with_blocks(scenario, path, lambda _: blocks)
+
+
 def _with_blocks(scenario: Scenario, path: Path, change: Callable[[list[Any]], list[Any]]) -> Scenario:
     data = scenario.canonical()
     parent = _at(data, path[:-1])

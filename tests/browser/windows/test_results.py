@@ -182,14 +182,21 @@ def test_a_limit_of_settling_is_one_edge_in_the_pole_map(window: Bench) -> None:
 
 
 def test_the_legs_come_back_after_another_motion(window: Bench) -> None:
-    legs = window.session.scenario.motion
+    legs: Any = window.session.scenario.motion
     window.tab("Run")
-    about = window.page.get_by_text(window.said("6 legs, as the scenario file gives them."))
+    about = window.page.get_by_text(window.said("add behind"))
     read(window, about)
     window.choose_and_run("motion", "static")
     about.first.wait_for(state="hidden")
     window.choose_and_run("motion", "legs")
     read(window, about)
+    assert window.session.scenario.motion == legs
+    with window.next_run():
+        about.first.click()
+    added: Any = window.session.scenario.motion
+    assert len(added.leg) == 7 and added.leg[1] == legs.leg[0]
+    with window.next_run():
+        window.page.get_by_text(window.said("take out"), exact=True).first.click()
     assert window.session.scenario.motion == legs
 
 
