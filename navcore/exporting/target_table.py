@@ -12,6 +12,7 @@ import tomlkit
 
 from navcore.analysis import analyse, margins
 from navcore.exporting.about import facts, filled, note_of, sources_of
+from navcore.exporting.equations import equations_of
 from navcore.exporting.form import Form
 from navcore.exporting.target_c import vectors_csv
 from navcore.foundation.answers import Column, Table
@@ -70,6 +71,9 @@ def table_of(form: Form) -> dict[str, Any]:
             document["azimuth"] = network_table(azimuth, subject.step_s, loop=False)
         for name in ("policy", "switching"):
             document[name] = getattr(method, name).model_dump(mode="json", by_alias=True, exclude_none=True)
+        document["equations"] = {
+            one.about: {"latex": one.latex, "text": one.text} for one in equations_of(scenario, method)
+        }
     document["constants"] = {name: value for name, (value, _) in form.program.constants.items()}
     document["tables"] = {name: table.tolist() for name, (table, _) in form.program.tables.items()}
     document["interface"] = {

@@ -1,14 +1,17 @@
 """Equations with the numbers in force: what is copied is what runs; and the archive that the page offers."""
 
 import io
+import tomllib
 import zipfile
+from html import escape
+from pathlib import Path
 
 import pytest
 
 from navcore.analysis import analyse
 from navcore.engine.drivers.common import network_of
 from navcore.exporting.equations import as_latex, as_text, equations_of
-from navcore.exporting.exported import Exported, Packed
+from navcore.exporting.exported import Exported, Packed, exported
 from navcore.networks.pasted import pasted
 from navcore.questions.export import ExportQuestion
 from navcore.scenario.file import load
@@ -91,6 +94,18 @@ def test_the_page_shows_them_as_mathematics_and_copies_them() -> None:
     assert COPY_LATEX in html and COPY_TEXT in html
     latex = as_latex(found)
     assert latex.startswith("\\begin{gather*}\n") and latex.count("\\\\\n") == len(found) - 1
+
+
+def test_the_table_holds_them(tmp_path: Path) -> None:
+    """In its TOML, from which the network is read back, and on its page to print."""
+    scenario = load("zha-external")
+    files = exported(scenario, "fast (compass)", target="table", rate_hz=1.0).files
+    table = tomllib.loads(str(files["schuler_law.toml"]))
+    found = equations_of(scenario, scenario.method[2])
+    assert [(one["latex"], one["text"]) for one in table["equations"].values()] == [one[1:] for one in found]
+    assert escape(found[0].text) in str(files["schuler_law.html"])
+    (tmp_path / "law.toml").write_text(str(files["schuler_law.toml"]))
+    assert pasted(str(tmp_path / "law.toml"))["den"] == table["network"]["den"]
 
 
 def test_the_archive_holds_the_files_of_the_command() -> None:
