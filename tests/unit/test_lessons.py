@@ -29,6 +29,7 @@ from schuler_bench.editing import form
 from schuler_bench.editing.form import FieldSpec
 from schuler_bench.session.display import Display
 from schuler_bench.views import load
+from schuler_bench.views import load as load_views
 from schuler_bench.views.errors.figure import error_plots
 from schuler_bench.views.errors.view import moving
 from schuler_bench.views.explain.view import (
@@ -370,3 +371,12 @@ def test_what_a_lesson_sets_of_the_display_goes_with_it() -> None:
     set_by_it = Display().with_(**{k: v for s in first.steps if s.action for k, v in s.action.shown.items()})
     assert set_by_it.time == "min" and set_by_it.with_(**without(first)) == Display()
     assert without(None) == {}
+
+
+@every_step
+def test_the_tabs_of_a_step_can_all_be_in_front(lesson: Lesson, index: int) -> None:
+    """Of two tabs of one panel only the last is seen."""
+    action = lesson.steps[index].action
+    places = {kind.title: kind.place for kind in load_views()}
+    named = [places[tab] for tab in action.tabs] if action else []
+    assert len(named) == len(set(named))
