@@ -21,7 +21,7 @@ KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b|\b[a-z_]+ = (?:\"[a-z0-9_]+\"|[0
 NODE = re.compile(r"(?<!\S)/\w+")
 """A node of the scene, as viser's own panel names it."""
 SYMBOLS = frozenset(
-    "Schuler Bench CSV SVG PNG TOML JSON HTML NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
+    "Schuler Bench CSV SVG PNG TOML JSON HTML LaTeX NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
     "log linear exact Deng Liu Zhao Sun Zha Sikuliaq fig eq theory md RMS GPS LQG IMU WGS ENE ESE SSE SSW "
     "WSW WNW NNW NNE Ctrl Shift Enter Esc English Viser WorldAxes light map metrics scenario toml json "
     "page state painted command serve host mas rms and pole2 imu reference npz".split()
