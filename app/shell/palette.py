@@ -9,7 +9,7 @@ from typing import Any
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets
 from schuler_bench.bridge.controls import lock_controls
-from schuler_bench.editing.edits import disturbances_toml, method_toml, paste
+from schuler_bench.editing.pasting import disturbances_toml, method_toml, paste
 from schuler_bench.jobs.words import without_folders
 from schuler_bench.session.history import changed_fields
 from schuler_bench.session.view import View

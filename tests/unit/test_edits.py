@@ -15,7 +15,7 @@ from navcore.scenario.file import load
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits, form
-from schuler_bench.editing.edits import WHERE, disturbances_toml, method_toml, paste
+from schuler_bench.editing.pasting import WHERE, disturbances_toml, method_toml, paste
 from schuler_bench.shell.editor import Editor
 from schuler_bench.shell.reset import opened_value
 from schuler_bench.views.method.view import azimuth_fields

@@ -180,7 +180,7 @@ def test_a_translation_cannot_bring_in_elements() -> None:
     )
 
 
-SYMBOLS = frozenset("TOML CSV RMS dB min".split())
+SYMBOLS = frozenset("TOML CSV RMS dB min Shift".split())
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from navcore.motion.swing import SwingMotion
 from navcore.scenario.file import parse_toml
 from navcore.scenario.schema_file import schema_text
 from schuler_bench.cli import main
-from schuler_bench.editing.edits import paste
+from schuler_bench.editing.pasting import paste
 from schuler_bench.session.uploads import Uploads, opened_scenario
 
 HEAD = "schema = 1\n[run]\nduration_h = 0.02\n"

@@ -33,13 +33,14 @@ def form_html() -> str:
         "The ship stands at 45° for 24 h. Every network is tuned for these limits, and run on 200 seeds. "
         "All of it can be changed afterwards."
     )
+    find = Text("Find designs")
     return Text(
         '<form class="sb-ship" data-send="{send}"><p>{told}</p>{fields}'
         '<button class="sb-do" type="submit">{find}</button></form>',
         send=SEND,
         told=told,
         fields=Text.joined("", _fields()),
-        find=Text("Find designs"),
+        find=find,
     )
 
 
