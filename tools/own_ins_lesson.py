@@ -1,7 +1,7 @@
 """Make the recordings of the lesson "Damping from outside": ``python -m tools.own_ins_lesson``.
 
-The strapdown engine sails a ship for six hours; its free INS, its log along the ship's axes and a GNSS are
-written each 10 s, as a ship's logger would.
+The strapdown engine sails a ship for six hours; its free INS and its log along the ship's axes are
+written each 10 s, a GNSS each 20 s, as a ship's logger would.
 """
 
 import csv
@@ -26,6 +26,8 @@ START = {
 }
 DIGITS = {"t_s": 0, "lat_deg": 7, "lon_deg": 7, "ve_mps": 4, "vn_mps": 4}
 NAMES = {"ins": "own-ins.csv", "log": "own-ins-log.csv", "truth": "own-ins-gnss.csv"}
+EVERY = {"truth": 2}
+"""Rows of 10 s of which one is written."""
 NOT_RECORDED = ("pitch_deg", "roll_deg")
 
 
@@ -42,7 +44,8 @@ def make(folder: Path) -> None:
                 writer = csv.writer(target, lineterminator="\n")
                 writer.writerow(columns)
                 writer.writerows(
-                    [f"{float(row[one]):.{DIGITS.get(one, 3)}f}" for one in columns] for row in rows
+                    [f"{float(row[one]):.{DIGITS.get(one, 3)}f}" for one in columns]
+                    for row in rows[:: EVERY.get(kind, 1)]
                 )
 
 

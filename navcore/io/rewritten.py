@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-_NUMBER = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?\s*")
+_NUMBER = re.compile(r"([+-]?)(\d*)(?:\.(\d*))?")
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def written_like(text: str, value: float) -> str:
     >>> written_like("054.301111", 54.3), written_like("+7.9", -7.93), written_like(" 12", 13.2)
     ('054.300000', '-7.9', ' 13')
     """
-    found = _NUMBER.fullmatch(text)
+    found = _NUMBER.fullmatch(text.strip())
     sign, whole, decimals = found.groups() if found else ("", "", "000000")
     body = f"{abs(value):.{len(decimals or '')}f}"
     if whole and whole.startswith("0") and len(whole) > 1:

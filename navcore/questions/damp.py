@@ -9,6 +9,7 @@ from navcore.foundation.answers import Answer, Column, Table
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.out import PathLike, placing, require_folder, utf8
 from navcore.foundation.text import Text
+from navcore.quantities import HEADING, POSITION, VELOCITY
 from navcore.questions.base import Cancelled, Progress, Question, Writes, option, unless_stopped
 
 
@@ -39,8 +40,8 @@ class Damped(Answer):
         yield Text(
             "{method}: the output moves by at most {position:.4g} m, {velocity:.3g} m/s",
             method=self.method,
-            position=self.largest["position_m"],
-            velocity=self.largest["velocity_mps"],
+            position=self.largest[POSITION.figure],
+            velocity=self.largest[VELOCITY.figure],
         )
         counted = tuple((name, text.count("\n")) for name, text in self.files.items())
         yield Table((Column(Text("file")), Column(Text("lines"))), counted)
@@ -91,9 +92,9 @@ navcore.foundation.errors.InputError: ins: is needed: the output of a ship's own
         moved = method.moved
         assert moved is not None
         largest = {
-            "position_m": float(abs(moved[:, 5] + 1j * moved[:, 6]).max()),
-            "velocity_mps": float(abs(moved[:, 3] + 1j * moved[:, 4]).max()),
-            "heading_rad": float(abs(moved[:, 2]).max()),
+            POSITION.figure: float(abs(moved[:, 5] + 1j * moved[:, 6]).max()),
+            VELOCITY.figure: float(abs(moved[:, 3] + 1j * moved[:, 4]).max()),
+            HEADING.figure: float(abs(moved[:, 2]).max()),
         }
         return Damped(method.method.name, damped_files(run, method), largest)
 

@@ -227,7 +227,14 @@ def recordings(repo_root: Path) -> Path:
 
 def test_the_recordings_are_small_understood_and_licensed(recordings: Path) -> None:
     files = sorted(recordings.glob("*.csv"))
-    assert [file.stem for file in files] == ["lasergyro-1s", "sikuliaq-log", "sikuliaq-track"]
+    assert sorted(file.stem for file in files) == [
+        "lasergyro-1s",
+        "own-ins",
+        "own-ins-gnss",
+        "own-ins-log",
+        "sikuliaq-log",
+        "sikuliaq-track",
+    ]
     assert sum(file.stat().st_size for file in files) < 500_000
     assert all(check_file(file, [IMU_CHECKER]).ok for file in files)
     licences = (recordings / "LICENCES.md").read_text(encoding="utf-8")

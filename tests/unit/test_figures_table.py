@@ -119,7 +119,7 @@ def test_a_pin_is_called_by_what_differs_and_holds_what_a_picture_needs() -> Non
     (both, _) = laid(pins.all, edits.with_value(now, ("method", 1, "name"), "another"))
     assert both.run is not None and len(both.run.methods) == 2, "a method that is gone is held too"
     longer = edits.with_value(now, ("run", "duration_h"), 1.5)
-    assert titled(pins.all, longer)[0].name.startswith(f"ζ {old:g}, duration h ")
+    assert titled(pins.all, longer)[0].name.startswith(f"ζ {old:g}, duration ")
 
 
 FACTORS = {"arcsec": ARCSEC, "arcmin": ARCMIN, "m/s": 1.0, "m": 1.0, "nmi": NAUTICAL_MILE}
