@@ -329,7 +329,10 @@ def field_words(model: BaseModel, path: str) -> tuple[str, str]:
     *blocks, name = path.split(".")
     at: Any = model
     for step in blocks:
-        at = at[int(step)] if step.isdigit() and isinstance(at, tuple) else getattr(at, step, None)
+        if step.isdigit() and isinstance(at, tuple):
+            at = at[int(step)] if int(step) < len(at) else None  # of a list that is longer elsewhere
+        else:
+            at = getattr(at, step, None)
     info = type(at).model_fields.get(name) if isinstance(at, BaseModel) else None
     if info is None or symbol(name) != name.replace("_", " "):
         return symbol(name), ""

@@ -252,8 +252,9 @@ class Bench(Choosing):
         self.catch_up()
 
     def clean(self) -> None:
-        """Take back what an earlier test has left: dialogs, lessons, pins, choices, the window."""
+        """Take back what an earlier test has left: files, dialogs, lessons, pins, choices, the window."""
         session = self.session
+        session.uploads.clear()
         self.page.keyboard.press("Escape")
         session.present(None)
         session.verifier.cancel()

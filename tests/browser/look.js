@@ -166,7 +166,7 @@ look.written = () => look.study()?._fullLayout.annotations.map(a => a.text).join
 // Bands of the plot of the east velocity, and the sum of the last one's upper edge.
 look.band = () => {
   const chart = Object.values(window.__viserTestpoints?.uplots ?? {})
-    .map(entry => entry.chart).find(c => c.root.offsetParent !== null && c.axes[1].label.startsWith('δVE'));
+    .map(entry => entry.chart).find(c => c.root.offsetParent !== null && c.axes[1].label.startsWith('φE'));
   const bands = chart?.bands ?? [];
   return [bands.length, bands.length ? chart.data[bands.at(-1).series[0]].reduce((a, b) => a + b, 0) : 0];
 };

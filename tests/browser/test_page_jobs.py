@@ -50,8 +50,10 @@ def test_the_strapdown_is_told_in_numbers_and_becomes_old(short: Bench) -> None:
     saved = download.value.path().read_text()
     assert "strapdown minus linear model" in saved and len(saved.splitlines()) > 300
     short.tab("Method", "Metrics")
-    table = page.locator(".sb-table:not(.sb-verdicts):visible")
-    table.get_by_text("Full strapdown minus linear model").wait_for()
+    table = page.locator(".sb-table:not(.sb-verdicts):visible").filter(
+        has_text="Full strapdown minus linear model"
+    )
+    table.wait_for()
     peak = short.session.verifier.result.differences[0]["phi_e_rad"].peak
     assert f"{peak * 180.0 / 3.141592653589793 * 3600.0:.3g}" in table.inner_text()
     assert table.inner_text().count("%)") == 3 * 8

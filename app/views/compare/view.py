@@ -237,8 +237,8 @@ class CompareView(PictureView[str]):
         # What the user is typing is theirs: texts change only with the pin.
         if pin.id != self._edited:
             self._edited = pin.id
-            shown = next(one.name for one in pins if one.id == pin.id)
-            self._name.value, self._note.value = shown, pin.note
+            # A name that is made of what differs changes with the run: it stands in the table alone.
+            self._name.value, self._note.value = "" if pin.unnamed else pin.name, pin.note
         self._color.value, self._shown.value = pin.color, pin.shown
 
     @property

@@ -74,7 +74,7 @@ def route_html(scenario: Scenario, selected: int) -> str:
         for spec in form.fields(type(blocks[0]), ("motion", name, 0))
         if any(getattr(block, str(spec.path[-1])) is not None for block in blocks)
     ]
-    head = row([cell("", tag="th"), *(cell(spec.label, "sb-m", tag="th") for spec in specs)])
+    head = row([cell(WORDS[name], tag="th"), *(cell(spec.label, "sb-m", tag="th") for spec in specs)])
     body = [
         row(
             [
