@@ -15,9 +15,9 @@ from navcore.exporting.averaging_step import Averages, Copy, averaged
 from navcore.exporting.form import Form
 from navcore.exporting.ir import Num, Var
 from navcore.exporting.program import read_program
-from navcore.exporting.step import Given
 from navcore.exporting.subject import Subject
 from navcore.exporting.values import Group
+from navcore.law.called import Given
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import make_recorder
 from navcore.motion.truth import HEADING, LAT, LON, PITCH, ROLL, VE, VN

@@ -11,11 +11,11 @@ from navcore.exporting.program import constants_of, inputs_of, place_of, read_pr
 from navcore.exporting.records import MOTION, MOTION_STATE
 from navcore.exporting.replay import INPUTS
 from navcore.exporting.replay_filter import FILTER_OUTPUTS, replayed_filter
-from navcore.exporting.step import Given
 from navcore.exporting.subject import Subject
 from navcore.exporting.values import Group, Named, Place, Value
 from navcore.exporting.vectors import inputs_along
 from navcore.foundation.records import new_record
+from navcore.law.called import Given
 from navcore.mechanization.kalman.filter import FilterState, filter_state
 from navcore.motion.truth import PITCH, ROLL
 

@@ -7,11 +7,12 @@ from navcore.exporting.ir import Program, Return, Var
 from navcore.exporting.program import constants_of, inputs_of, place_of, read_program
 from navcore.exporting.records import LOG_PARAMETERS, LOG_STATE
 from navcore.exporting.replay import INPUTS, OUTPUTS, replayed
-from navcore.exporting.step import Given, Reading, step
+from navcore.exporting.step import Reading, step
 from navcore.exporting.subject import Subject, hold_calls
 from navcore.exporting.values import Group
 from navcore.exporting.vectors import inputs_along, reference_of
 from navcore.foundation.records import new_record
+from navcore.law.called import Given
 from navcore.law.law import Law
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario

@@ -8,8 +8,9 @@ import math
 from typing import Any, NamedTuple
 
 from navcore.exporting.filter_step import rate_terms
-from navcore.exporting.step import Given, step
+from navcore.exporting.step import step
 from navcore.foundation.compiled import inlined
+from navcore.law.called import Given
 from navcore.law.records import E, N
 from navcore.mechanization.error_model import Held, runge_kutta
 from navcore.mechanization.recorder import Errors

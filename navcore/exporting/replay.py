@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from navcore.exporting.step import Commands, Given, step
+from navcore.exporting.step import Commands, step
 from navcore.foundation.compiled import kernel
+from navcore.law.called import Given
 
 INPUTS, OUTPUTS = Given._fields, Commands._fields
 """Names of the columns."""

@@ -3,8 +3,8 @@
 import numpy as np
 
 from navcore.exporting.filter_step import FilterCommands, filter_step
-from navcore.exporting.step import Given
 from navcore.foundation.compiled import kernel
+from navcore.law.called import Given
 
 FILTER_OUTPUTS = FilterCommands._fields
 """Names of the columns."""

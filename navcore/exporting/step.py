@@ -17,20 +17,6 @@ NO_SAMPLE, SAMPLE, NOT_YET = 0, 1, 2
 """Words of ``log_valid``: the log has none, a sample, none yet."""
 
 
-class Given(NamedTuple):
-    """Inputs of a call, in the order of the contract."""
-
-    v_e_mps: float
-    v_n_mps: float
-    lat_rad: float
-    log_e_mps: float
-    log_n_mps: float
-    log_valid: int
-    yaw_rad: float
-    accel_e_mps2: float
-    accel_n_mps2: float
-
-
 class Commands(NamedTuple):
     """Outputs of a call, in the order of the contract; then the velocity that is given out."""
 

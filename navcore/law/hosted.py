@@ -22,6 +22,7 @@ from navcore.foundation.parameters import Parameters
 from navcore.foundation.registry import place_of
 from navcore.foundation.text import Text
 from navcore.law.added_call import COMMANDED, GIVEN
+from navcore.law.called import Given
 from navcore.law.history import USE_HEADING
 from navcore.law.law import Law
 
@@ -40,20 +41,6 @@ class Start(NamedTuple):
     v_e_mps: float
     v_n_mps: float
     step_s: float
-
-
-class Given(NamedTuple):
-    """Inputs of a call, those of an exported law (`navcore.exporting.step`)."""
-
-    v_e_mps: float
-    v_n_mps: float
-    lat_rad: float
-    log_e_mps: float
-    log_n_mps: float
-    log_valid: int
-    yaw_rad: float
-    accel_e_mps2: float
-    accel_n_mps2: float
 
 
 class Commands(NamedTuple):

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from navcore.exporting.law_form import Given as ExportedGiven
 from navcore.exporting.step import Commands as ExportedCommands
-from navcore.exporting.step import Given as ExportedGiven
 from navcore.law.hosted import Commands, Given
 
 EXPORTED = """
