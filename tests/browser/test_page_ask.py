@@ -60,3 +60,7 @@ def test_a_method_is_downloaded_as_code_and_its_equations_are_copied(short: Benc
     short.button("copy as LaTeX").click()
     text = short.dialog("Copied as LaTeX").get_by_role("textbox").input_value()
     assert text.startswith("\\begin{gather*}") and "H(s) = \\frac{" in text
+    page.keyboard.press("Escape")
+    short.choose_and_run("scenario", "sun-step")
+    short.tab("Method")
+    page.get_by_text("replay.m").wait_for(state="hidden")

@@ -305,8 +305,9 @@ def test_a_preset_opens(bench: Bench, name: str) -> None:
     bench.tab("Errors")
     bench.page.wait_for_selector(".uplot canvas")
     bench.tab("Metrics")
-    table = "names => names.every(name => document.querySelector('.sb-table')?.innerText.includes(name))"
-    bench.page.wait_for_function(table, arg=names)
+    table = bench.page.locator(".sb-table:visible")
+    for each in names:
+        table.filter(has_text=each).first.wait_for()
 
 
 @pytest.mark.slow

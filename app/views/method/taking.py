@@ -43,6 +43,7 @@ class TakingPanel:
         self._frame, self._session = frame, frame.session
         self._asker = frame.session.searches.asking["export"]
         self._wanted: object = None
+        self._listed: object = None
         with tab:
             self._equations = gui.add_folder(_EQUATIONS, order=order, expand_by_default=False)
             self._files = gui.add_folder(_FILES, order=order + 1.0, expand_by_default=False)
@@ -55,12 +56,17 @@ class TakingPanel:
             self._words: Any = gui.add_html("", visible=False, order=23.0)
             self._said: Any = gui.add_html("", visible=False, order=24.0)
 
-    def show_equations(self) -> None:
-        """Show the equations of the selected method; nothing where no network acts."""
+    def draw(self) -> None:
+        """Show the equations of the selected method; remove the list of an archive that holds another law."""
+        if self._listed != self._law():
+            show_html(self._said, "")
         found = self._found(_DIGITS)
         reveal((self._equations, bool(found)))
         if found:
             show_html(self._formulas, equations_html(found))
+
+    def _law(self) -> tuple[object, int]:
+        return self._session.scenario, self._session.selected
 
     def copied(self, write: Any) -> str:
         """Return the equations with all digits, written by `as_latex` or `as_text`."""
@@ -100,6 +106,7 @@ class TakingPanel:
         self._wanted, found = None, self._asker.result
         if found is None:  # forgotten meanwhile
             return
+        self._listed = self._law()
         show_html(self._said, Text('<div class="sb-wide sb-table">{html}</div>', html=found.html()))
         client = self._frame.client
         client.send_file_download(found.name, found.archive, save_immediately=True)

@@ -149,7 +149,7 @@ class MethodView(View):
     def draw(self, found: Shown) -> None:
         """Show the warnings about the selected method, and its equations."""
         del found
-        self._taking.show_equations()
+        self._taking.draw()
         self._show_warnings(self.session.run, self.session.scenario, self.session.selected)
 
     def _show(self, scenario: Scenario, index: int, moved: Control | None) -> None:
