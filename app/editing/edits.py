@@ -158,7 +158,7 @@ def value_at(scenario: Scenario, path: Path) -> Any:
         if place is None:
             return None
         place = place[step] if isinstance(step, int) else getattr(place, step)
-    return shown_part(place, path)
+    return shown_part(place, path) if place is None else place
 
 
 def values_at(scenario: Scenario, paths: Iterable[Path]) -> dict[Path, Any]:

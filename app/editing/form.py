@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import types
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
@@ -153,6 +153,11 @@ class FieldSpec:
     choices: tuple[str, ...] = ()
     slider: Slider | None = None
     allowed: tuple[float, float] = (-math.inf, math.inf)
+
+    @cached_property
+    def name(self) -> str:
+        """Dotted path of the field, as in ``--set``."""
+        return ".".join(map(str, self.path))
 
 
 def round_step(width: float) -> float:

@@ -39,6 +39,6 @@ def choose_part(scenario: Scenario, data: dict[str, Any], path: Path, chosen: An
     return None if chosen == NONE else chosen
 
 
-def shown_part(value: Any, path: Path) -> Any:
-    """Value of a field as its control shows it: no part is a choice too."""
-    return NONE if value is None and path in PARTS else value
+def shown_part(value: None, path: Path) -> str | None:
+    """What the control of a field shows that is left out: no part is a choice too."""
+    return NONE if path in PARTS else value

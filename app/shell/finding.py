@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from navcore.foundation.text import Text
 from schuler_bench.editing.form import FieldSpec, label_alone
-from schuler_bench.shell.reset import name_of
 
 if TYPE_CHECKING:
     from schuler_bench.shell.view import Frame, View
@@ -29,9 +28,15 @@ class Finder:
     def __init__(self, frame: Frame) -> None:
         self._frame = frame
         self._offered: dict[str, str] = {}
+        self._found: tuple[object, ...] = ()
 
     def show(self) -> None:
-        """Offer what the session's scenario has now."""
+        """Offer what the session's scenario has now, where that is not what was offered before."""
+        methods, views = self._frame.session.scenario.method, self._frame.views()
+        found = (tuple(method.name for method in methods), tuple(tuple(view.fields()) for view in views))
+        if found == self._found:
+            return
+        self._found = found
         wanted: dict[str, tuple[str, Callable[[], None]]] = {}
         for name, found in self._wanted():
             wanted.setdefault(name, found)  # a lesson shows fields of other tabs, too
@@ -49,7 +54,7 @@ class Finder:
         for view in self._frame.views():
             for spec in view.fields():
                 title = Text("{field} (tab {tab})", field=label_alone(spec), tab=view.title)
-                name = f"field-{re.sub(r'[^a-z0-9]+', '-', name_of(spec.path).lower())}"[:_LONGEST]
+                name = f"field-{re.sub(r'[^a-z0-9]+', '-', spec.name.lower())}"[:_LONGEST]
                 yield name, (title, lambda view=view, spec=spec: self._go(view, spec))
 
     def _edit(self, place: int) -> None:

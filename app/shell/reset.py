@@ -103,7 +103,7 @@ class Resets:
         for control in controls:
             value = opened_value(opened, scenario, control.spec, networks)
             if value is not None and differs(control.value, value):
-                now[name_of(control.spec.path)] = (control, value)
+                now[control.spec.name] = (control, value)
         self._changed = now
         for name in before.keys() - now.keys():
             self._commands.remove(f"reset-{_slug(name)}")
@@ -116,23 +116,18 @@ class Resets:
 
     def of(self, control: Control | None) -> tuple[str, str] | None:
         """Argument of `RESET_FIELD` for a control, and the value it brings back; None if there is nothing."""
-        name = "" if control is None else name_of(control.spec.path)
+        name = "" if control is None else control.spec.name
         changed = self._changed.get(name)
         return None if changed is None else (name, value_text(*changed))
 
     def take_back(self, control: Control) -> None:
         """Reset the field of a control, if it has been changed."""
-        self._reset(name_of(control.spec.path))
+        self._reset(control.spec.name)
 
     def _reset(self, name: str) -> None:
         changed = self._changed.get(name.strip())
         if changed is not None:
             self._put(*changed)
-
-
-def name_of(path: Path) -> str:
-    """Dotted path of a field, as in ``--set``."""
-    return ".".join(str(step) for step in path)
 
 
 def value_text(control: Control, value: Any) -> str:

@@ -67,7 +67,7 @@ class _Search:
         level = min(octave + 1, self.octaves)
         length = self.end / 2.0**level
         lower = length if octave < self.octaves else 0.0
-        fastest = max((swing for decay, swing in self.rates if decay * lower < _DEAD), default=0.0)
+        fastest = max([swing for decay, swing in self.rates if decay * lower < _DEAD], default=0.0)
         wanted = length * fastest / _PHASE_STEP
         return level, min(max(_COARSEST, math.ceil(math.log2(max(wanted, 1.0)))), _FINEST)
 

@@ -61,7 +61,7 @@ def spans(records: np.ndarray, step_s: float, readings: np.ndarray | None = None
     made = [_span(span, step_s) for span in records[records["count"] > 0]]
     if made and readings is not None:
         taken = readings[~np.isnan(readings[:, 0])]
-        pairs = tuple((float(plain), float(level)) for plain, level in taken)
+        pairs = tuple(map(tuple, taken.tolist()))
         made[0] = replace(made[0], readings=pairs, reading_s=reading_steps(step_s) * step_s)
     return tuple(made)
 

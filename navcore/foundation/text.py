@@ -80,7 +80,7 @@ class Text(Words):
         """
         values = {f"part{number}": part for number, part in enumerate(parts)}
         literal = joint.replace("{", "{{").replace("}", "}}")
-        return cls(literal.join(f"{{{name}}}" for name in values), **values)
+        return cls(literal.join([f"{{{name}}}" for name in values]), **values)
 
     def __add__(self, other: str) -> Text:
         """Join with what follows."""

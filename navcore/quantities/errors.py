@@ -1,6 +1,7 @@
 """The eight errors that every run records, and the four kinds of errors."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal
 
 from navcore.foundation.text import Text
@@ -133,6 +134,7 @@ def budgeted(steady: bool) -> tuple[Kind, ...]:
     return KINDS[:2] if steady else KINDS
 
 
+@cache
 def components(kind: Kind) -> tuple[str, ...]:
     """Return the names of a kind's components, of the distance both.
 

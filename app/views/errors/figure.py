@@ -283,8 +283,8 @@ def _time_axis(run: Run) -> np.ndarray:
 
 
 def _peak(methods: list[MethodRun], name: str) -> float:
-    sizes = (m.errors[name]["max_abs"] for m in methods)
-    return max((size for size in sizes if not math.isnan(size)), default=0.0)
+    sizes = [method.errors[name]["max_abs"] for method in methods]
+    return max([size for size in sizes if not math.isnan(size)], default=0.0)
 
 
 def _symbol(symbol: str, peak: float, unknown: bool) -> str:

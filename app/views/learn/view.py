@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from html import escape
 from typing import Any
 
@@ -361,6 +361,7 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
     return []
 
 
+@cache
 def _list_html() -> str:
     entries = Text.joined(
         "",

@@ -1,6 +1,7 @@
 """The methods as chips: colour, name and eye of each; a menu at the one that the controls edit."""
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 from navcore.foundation.text import Text
 from schuler_bench.plots import style
@@ -53,6 +54,7 @@ def chips_html(names: Mapping[str, int], chosen: int, hidden: Sequence[bool], *,
     )
 
 
+@lru_cache(maxsize=256)
 def _chip(place: int, name: str, color: str, chosen: bool, hidden: bool, arranging: bool) -> str:
     eye = Text("Show {name}", name=name) if hidden else Text("Hide {name}", name=name)
     return Text(

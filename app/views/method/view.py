@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 from navcore.analysis.loop import velocity_settling
@@ -11,6 +12,7 @@ from navcore.damping.gyrocompass import Gyrocompass
 from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.exporting.equations import as_latex, as_text
+from navcore.foundation.offered import when_changed
 from navcore.foundation.text import Text
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
@@ -244,6 +246,7 @@ def azimuth_fields(scenario: Scenario, index: int) -> list[FieldSpec]:
     return [*([switch] if method.kind.uses_log else []), _catalogue("azimuth", path), *network]
 
 
+@lru_cache(maxsize=256)
 def _catalogue(part: str, path: Path) -> FieldSpec:
     members, label = _CATALOGUES[part]
     titles = (
@@ -253,6 +256,9 @@ def _catalogue(part: str, path: Path) -> FieldSpec:
     return FieldSpec(
         (*path, part, "id"), label, Text.joined("; ", titles), "choice", next(iter(members)), tuple(members)
     )
+
+
+when_changed(_catalogue.cache_clear)
 
 
 def loop_text(method: MethodRun, lat_deg: float) -> str:

@@ -1,7 +1,9 @@
 """Tab "Run": duration, site, motion and its route, initial errors, seed, strapdown settings."""
 
+from functools import cache
 from typing import Any
 
+from navcore.foundation.offered import when_changed
 from navcore.foundation.registry import blocks_of
 from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
@@ -32,6 +34,7 @@ class RunView(FieldsView):
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
         super().build(tab)
+        self._routed: object = None
         gui = self.frame.gui
         with tab:
             gui.add_html(notices.heading(Text("Run and site")), order=0)
@@ -75,26 +78,20 @@ class RunView(FieldsView):
         if tuple(self._which.options) != options:
             self._which.options = options
         self._which.value = options[min(place, len(options) - 1)]
-        self._route.content = route_html(scenario, self._place)
+        routed = scenario.motion, self._place
+        if routed != self._routed:
+            self._routed, self._route.content = routed, route_html(scenario, self._place)
 
     def follow_scenario(self) -> None:
         """Show the scenario's values."""
         scenario, settings = self.session.scenario, form.fields(RunSettings, ("run",))
         self._show_route(self._place)
         motion = scenario.motion
-        about = Text.joined(
-            "; ",
-            (
-                Text("{key}: {summary}", key=key, summary=(m.__doc__ or "").strip().splitlines()[0])
-                for key, m in MOTIONS.items()
-            ),
-        )
-        kind = FieldSpec(("motion", "kind"), "motion", about, "choice", "static", tuple(MOTIONS))
         self.show_fields(
             {
                 "run": [spec for spec in settings if spec.path[-1] not in (_RATE, *_STRAPDOWN_ONLY)],
                 "site": form.fields(SiteSettings, ("site",)),
-                "motion": [kind, *form.fields(type(motion), ("motion",)), *_inner_blocks(scenario)],
+                "motion": [_kinds(), *form.fields(type(motion), ("motion",)), *_inner_blocks(scenario)],
                 "route": fields_of(scenario, self._place),
                 "initial": form.fields(InitialError, ("initial_error",)),
                 "strapdown": [
@@ -103,6 +100,22 @@ class RunView(FieldsView):
                 ],
             }
         )
+
+
+@cache
+def _kinds() -> FieldSpec:
+    """Choice of the motion."""
+    about = Text.joined(
+        "; ",
+        (
+            Text("{key}: {summary}", key=key, summary=(kind.__doc__ or "").strip().splitlines()[0])
+            for key, kind in MOTIONS.items()
+        ),
+    )
+    return FieldSpec(("motion", "kind"), "motion", about, "choice", "static", tuple(MOTIONS))
+
+
+when_changed(_kinds.cache_clear)
 
 
 def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:

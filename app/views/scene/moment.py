@@ -202,7 +202,7 @@ def _way(bob: Bob, factor: float) -> str:
     """The way of the last period as seen from above, and where the bob is."""
     scale = factor * _PLAN_HALF / _WIDEST
     at = np.clip(scale * bob.trail, -1.1 * _PLAN_HALF, 1.1 * _PLAN_HALF)
-    points = " ".join(f"{_PLAN[0] + e:.1f},{_PLAN[1] - n:.1f}" for e, n in at)
+    points = " ".join([f"{_PLAN[0] + e:.1f},{_PLAN[1] - n:.1f}" for e, n in at])
     e, n = at[-1]
     return (
         f'<polyline points="{points}" fill="none" stroke="{bob.color}" stroke-width="1.4" '
