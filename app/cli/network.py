@@ -85,6 +85,8 @@ def network_text(report: dict[str, Any]) -> list[str]:
     lines += [*columns(facts), "", *_whole_system(report)]
     if "margins" in report:
         lines += ["", *_margins(report["margins"])]
+    if "two_channel" in report:
+        lines += ["", *_two_channel(report["two_channel"], report["lat_deg"])]
     return lines + ([""] if report["warnings"] else []) + [f"warning: {text}" for text in report["warnings"]]
 
 
@@ -142,6 +144,30 @@ def _margins(margins: dict[str, float | None] | None) -> list[str]:
             ]
         ),
     ]
+
+
+def _two_channel(found: dict[str, Any] | None, lat_deg: float) -> list[str]:
+    """List what the network leaves on both channels, and what the optimum of both would."""
+    title = f"steady errors of both channels at latitude {lat_deg:g}°, standard deviations"
+    if found is None:
+        return [title, "none: the optimum of both channels does not exist for these figures"]
+    units = UNITS["arcsec"], UNITS["arcsec"], UNITS["arcmin"], 1.0, 1.0
+    rows = [
+        ["", "tilt E", "tilt N", "heading", "velocity E", "N"],
+        ["", *["arcsec"] * 2, "arcmin", *["m/s"] * 2],
+    ]
+    for key, words in (
+        ("floor", "floor"),
+        ("both_channels", "optimum of both channels"),
+        ("one_channel", "this network on each"),
+    ):
+        values = found[key]
+        if values is None:
+            rows.append([words, "no steady state", "", "", "", ""])
+        else:
+            sizes = zip(values.values(), units, strict=True)
+            rows.append([words, *(number(value / unit) for value, unit in sizes)])
+    return [title, *columns(rows)]
 
 
 def _roots(roots: list[list[float]], omega_s: float) -> list[list[str]]:

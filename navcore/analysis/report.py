@@ -11,6 +11,7 @@ import numpy as np
 
 from navcore.analysis import analyse, disk_margin, margins
 from navcore.analysis.held_log import held_log
+from navcore.analysis.two_channel import two_channel
 from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.analysis.worst_step import worst_step
 from navcore.foundation.earth import SPHERE
@@ -85,6 +86,7 @@ def network_report(
         **whole_system_report(whole),
         "growth_per_s": _finite(growth),
         **({"margins": _margins(network)} if with_margins else {}),
+        **_two_channel(parameters, network, lat_deg * DEG),
         "warnings": list(dict.fromkeys(warnings)),
     }
 
@@ -108,6 +110,26 @@ def _feedback(network: LinearNetwork) -> dict[str, list[float]]:
     missing = network.order - len(network.feedback_p)
     powers = 2.0 + missing + np.arange(len(network.feedback_p))
     return {"feedback_num": [float(c) for c in network.feedback_p * network.omega_s**powers]}
+
+
+def _two_channel(
+    parameters: NetworkParameters, network: LinearNetwork, lat: float
+) -> dict[str, dict[str, Any] | None]:
+    """Return what the optimum of both channels leaves beside a network that is optimal for one."""
+    problem = parameters.control_problem()
+    if problem is None:
+        return {}
+    found = two_channel(network, problem, lat)
+    if found is None:
+        return {"two_channel": None}
+    one = found.one_channel
+    return {
+        "two_channel": {
+            "floor": found.floor._asdict(),
+            "both_channels": found.both_channels._asdict(),
+            "one_channel": None if one is None else one._asdict(),
+        }
+    }
 
 
 def _margins(network: LinearNetwork) -> dict[str, float | None] | None:

@@ -27,7 +27,7 @@ from navcore.networks.transfer_function import transfer_function
 if TYPE_CHECKING:
     from control import TransferFunction
 
-    from navcore.networks.lqg import SensorFigures
+    from navcore.networks.lqg import ControlProblem, SensorFigures
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -198,6 +198,10 @@ class NetworkParameters(Entry):
             These parameters make no network (field names relative to the network block).
         """
         raise NotImplementedError
+
+    def control_problem(self) -> ControlProblem | None:
+        """Return the control problem of one channel that the network solves; None where it solves none."""
+        return None
 
     def figure(self, name: str = "bode", lat_deg: float = 45.0, **options: Any) -> Any:
         """Draw the network damping with a log at a latitude, as `plotly.graph_objects.Figure`.

@@ -7,7 +7,7 @@ in m/s, tilt times sqrt(g R) in m/s, so that the free loop is dV' = phi, phi' = 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,6 +66,24 @@ class SensorFigures:
     def log(self) -> bool:
         """Whether the log has any random error."""
         return any((self.log_noise, self.log_drift))
+
+
+class ControlProblem(NamedTuple):
+    """What an LQG law is designed for.
+
+    Attributes
+    ----------
+    figures : SensorFigures
+    rho, q : float
+        Weights of the correction and of the velocity error in phi^2 + q dV^2 + rho (u_c^2 + u_a^2).
+    feedback : bool
+        Whether the velocity itself is corrected too.
+    """
+
+    figures: SensorFigures
+    rho: float
+    q: float
+    feedback: bool
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.networks.base import MAX_ORDER, LinearNetwork, NetworkParameters, linear_network, refuse
-from navcore.networks.lqg import Compensator, SensorFigures, compensator, plant
+from navcore.networks.lqg import Compensator, ControlProblem, SensorFigures, compensator, plant
 from navcore.networks.seen_at import seen_at
 from navcore.networks.state_space import state_spaces
 
@@ -235,6 +235,10 @@ class OptimalNetwork(NetworkParameters):
             )
             warnings = (*warnings, fragile)
         return replace(network, warnings=warnings)
+
+    def control_problem(self) -> ControlProblem:
+        """Return what it is designed for, on one level channel."""
+        return ControlProblem(self.figures()[0], self.rho, self.q, self.realisation == "feedback")
 
     @property
     def stated_omega_s(self) -> float | None:
