@@ -80,21 +80,22 @@ class Clock:
         rows, text = sentences.rows, sentences.block.text
         found: list[float] = []
         doubtful = np.zeros(len(sentences.addresses), bool)
+        stamps_s = rows["stamp_s"] - self._tally.local_time_s - self._tally.clock_error_s
         columns = (
-            rows["stamp_s"],
+            stamps_s,
             rows["dated"],
             *(readings[name] for name in ("sensible", "invalid", "time_of_day", "day")),
         )
-        for row, (stamp_s, dated, sensible, invalid, time_of_day, day) in enumerate(
-            zip(*(column.tolist() for column in columns), strict=True)
+        for row, (address, stamp_s, dated, sensible, invalid, time_of_day, day) in enumerate(
+            zip(sentences.addresses, *(column.tolist() for column in columns), strict=True)
         ):
             if not sensible:
                 found.append(math.nan)
                 continue
-            told = sentences.addresses[row] == _LOGGED_ADDRESS
+            told = address == _LOGGED_ADDRESS
             if told:
                 self._take_logged(text[rows["begin"][row] : rows["end"][row]])
-            near = self._near(stamp_s, dated)
+            near = stamp_s if dated and not math.isnan(stamp_s) else self._near(stamp_s)
             if math.isnan(time_of_day) or (invalid and near is not None):
                 if near is None or (math.isnan(stamp_s) and not told):
                     found.append(math.nan)
@@ -128,14 +129,9 @@ class Clock:
         except (ValueError, IndexError):
             return
 
-    def _near(self, stamp_s: float, dated: bool) -> float | None:
-        """Time of the stamp, or of the logger's line before."""
-        if math.isnan(stamp_s):
-            return self._logged
-        seconds = stamp_s - self._tally.local_time_s - self._tally.clock_error_s
-        if dated:
-            return seconds
-        return self._without_stamp(seconds, math.nan)
+    def _near(self, stamp_s: float) -> float | None:
+        """Time of a stamp without a date, or of the logger's line before."""
+        return self._logged if math.isnan(stamp_s) else self._without_stamp(stamp_s, math.nan)
 
     def _without_stamp(self, own: float, day: float) -> float:
         if not math.isnan(day):

@@ -181,12 +181,14 @@ class Gathered:
                 np.concatenate(columns) for columns in zip(*self._quantities[quantity], strict=True)
             )
             kinds, empty = rows["kind"][row], values[:, 2] == NOT_GIVEN
-            absent = ~np.isin(kinds, np.unique(kinds[~empty]))
+            absent = np.bincount(kinds, ~empty, len(names))[kinds] == 0
             lost = empty & ~absent
             values[lost, 2] = 0.0
             rows["invalid"][row[lost]] = True
             self._tally.flagged.update((names[kind], quantity) for kind in kinds[lost].tolist())
             self._quantities[quantity] = [(row[~absent], values[~absent])]
+            if not absent.any():
+                continue
             others = [
                 part for name, parts in self._quantities.items() if name != quantity for part, _ in parts
             ]
