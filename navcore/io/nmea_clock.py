@@ -100,17 +100,18 @@ class Clock:
                 if near is None or (math.isnan(stamp_s) and not told):
                     found.append(math.nan)
                     continue
-                self._now = near
+                now = near
             elif invalid:
                 found.append(self._of_no_fix(time_of_day, day))
                 doubtful[row] = True
                 continue
             elif near is None:
-                self._now = self._without_stamp(time_of_day, day)
+                now = self._without_stamp(time_of_day, day)
             else:
-                self._now = _nearest_day(time_of_day, near)
-                self._tally.clock_offsets.append(near - self._now)
-            found.append(self._now)
+                now = _nearest_day(time_of_day, near)
+                self._tally.clock_offsets.append(near - now)
+            self._now = now
+            found.append(now)
         return np.array(found), doubtful
 
     def _of_no_fix(self, own: float, day: float) -> float:
