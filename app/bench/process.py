@@ -7,6 +7,7 @@ import sys
 import tempfile
 import time
 import urllib.request
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Self
 
@@ -35,6 +36,8 @@ class Server:
     ----------
     workers : int
         Processes that share the visitors (``schuler serve --workers``); 1: one process, without a door.
+    options : sequence of str
+        Further options of the command.
 
     Attributes
     ----------
@@ -44,7 +47,8 @@ class Server:
         From the start of the process until the page was served.
     """
 
-    def __init__(self, workers: int = 1) -> None:
+    def __init__(self, workers: int = 1, options: Sequence[str] = ()) -> None:
+        self._options = options
         self.port = free_port()
         self._workers = workers
         self.startup_s = 0.0
@@ -52,6 +56,7 @@ class Server:
     def __enter__(self) -> Self:
         words = [sys.executable, "-m", "schuler_bench", "serve", "--port", str(self.port)]
         words += ["--workers", str(self._workers)] if self._workers > 1 else []
+        words += self._options
         began = time.perf_counter()
         # What the timed visitor did is not kept among the user's sessions.
         self._state = tempfile.TemporaryDirectory(prefix="schuler-bench-")

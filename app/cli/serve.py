@@ -1,12 +1,15 @@
 """``schuler serve``: the dashboard."""
 
 import os
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import UseAppendAction, arg
+
+from navcore.foundation.errors import Fault, InputError
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,16 @@ class ServeCommand:
         searches); also SCHULER_CLUSTER. Needs the extra: schuler-bench[cluster].
     lessons : Path or None
         Folder of lessons of one's own, Markdown files (docs/teaching.md), shown after those of the program.
+    listen : tuple of str
+        Where the output of a ship's INS and its log come in as NMEA 0183, udp://127.0.0.1:10110 or
+        file:PATH for a file that grows; may be given several times. Beyond this machine the sender is named:
+        udp://0.0.0.0:10110?from=192.0.2.7.
+    live_scenario : str
+        Preset or file whose methods, and [ins.damping], are laid on what is heard; four methods without it.
+    send : str or None
+        Where the damped output is sent as NMEA 0183, udp://HOST:PORT.
+    send_method : str
+        Whose output is sent; the first method's without it.
     open : bool
         Open the page in the browser.
     """
@@ -53,6 +66,10 @@ class ServeCommand:
     workers: Annotated[int, arg(metavar="N")] = 1
     cluster: Annotated[str | None, arg(metavar="ADDRESS")] = None
     lessons: Annotated[Path | None, arg(metavar="DIR")] = None
+    listen: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="URL")] = ()
+    live_scenario: Annotated[str, arg(metavar="SCENARIO")] = ""
+    send: Annotated[str | None, arg(metavar="URL")] = None
+    send_method: Annotated[str, arg(metavar="NAME")] = ""
     open: bool = False
 
     def execute(self) -> int:
@@ -66,6 +83,7 @@ class ServeCommand:
             from schuler_bench.views.learn.own import use_lessons
 
             use_lessons(self.lessons)
+        live = self._live()
         token = find_token(self.token, self.token_file, self.generate_token, os.environ)
         named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()
         cluster = self.cluster or os.environ.get(CLUSTER) or None
@@ -74,13 +92,27 @@ class ServeCommand:
             if self.workers == 1
             else partial(serve_with_workers, count=self.workers)
         )
-        begin(
-            self.host,
-            self.port,
-            token=token.value,
-            show_token=token.generated,
-            allow_origins=(*self.allow_origin, *named),
-            frame_origins=self.frame_origin,
-            cluster=cluster,
-        )
+        with live:
+            begin(
+                self.host,
+                self.port,
+                token=token.value,
+                show_token=token.generated,
+                allow_origins=(*self.allow_origin, *named),
+                frame_origins=self.frame_origin,
+                cluster=cluster,
+            )
         return 0
+
+    def _live(self) -> AbstractContextManager[object]:
+        """What listens while the server does; raises `InputError`."""
+        if not (self.listen or self.send or self.send_method or self.live_scenario):
+            return nullcontext()
+        from schuler_bench.live.live import listening
+        from schuler_bench.live.settings import settings_of
+
+        settings = settings_of(self.listen, self.send, self.send_method, self.live_scenario)
+        if self.workers != 1:
+            allowed = "must be 1 with --listen: one process hears the INS"
+            raise InputError(Fault("serve", "--workers", self.workers, allowed))
+        return listening(settings)

@@ -29,7 +29,7 @@ JUDGED = {
     "heading_max_arcmin": (Text("largest heading error"), "arcmin"),
 }
 """Quantities by which the best method is named, with their words and units; the first at once."""
-_METHODS: tuple[dict[str, Any], ...] = (
+METHODS: tuple[dict[str, Any], ...] = (
     {"name": "unity2", "damping": "external", "network": {"id": "unity2", "zeta": 0.5}},
     {"name": "complementary", "damping": "external", "network": {"id": "complementary"}},
     {
@@ -86,15 +86,19 @@ def taken(uploads: Uploads) -> Taken:
 
     A file with positions is an INS's output or a reference; of two the one whose name says so, else the one
     with a heading, else the one that gives positions more often, is the INS. What holds speeds along the
-    ship's axes, or speeds and no position, is the log; a heading beside positions belongs to the INS.
+    ship's axes, or speeds and no position, is the log; a heading beside positions belongs to the INS. A file
+    with all of it is both.
     """
     held = {name: one.quantities for name, one in uploads.files.items() if not one.faults}
     placed = [name for name, quantities in held.items() if "position" in quantities]
     logs = [name for name, quantities in held.items() if quantities & {"water", "ground"}]
+    whole = [name for name in logs if name in placed]
     logs = logs or [name for name, found in held.items() if "velocity" in found and name not in placed]
     placed = [name for name in placed if name not in logs]
-    if not placed:
+    if not placed and not whole:
         return Taken((), tuple(logs))
+    if not placed:  # one file holds it all, as where all instruments are on one line
+        return Taken(tuple(whole[:1]), tuple(logs))
 
     def rank(name: str) -> tuple[bool, bool, bool, float]:
         position = load(uploads.files[name].path).position
@@ -135,7 +139,7 @@ def own_scenario(uploads: Uploads, roles: Taken) -> tuple[Scenario, list[str]]:
         "source": ", ".join((*roles.ins, *roles.log, *roles.truth))[:300],
         "ins": {"file": paths(roles.ins)},
         "reference": {"kind": "file", "file": paths(roles.log)},
-        "method": [dict(one) for one in _METHODS],
+        "method": [dict(one) for one in METHODS],
     }
     if roles.truth:
         data["truth"] = {"file": paths(roles.truth)}

@@ -69,17 +69,37 @@ def read_nmea(path: Path) -> NmeaLog:
         Empty or binary file, no usable sentence, no time, time running backwards, too many wrong checksums.
     """
     content = read_text(path)
-    tally = Tally()
-    clock = Clock(content.text, path.name, tally)
-    gathered = Gathered(tally)
-    for sentences in intact_sentences(content.text, tally):
-        gathered.add(sentences, clock)
-    ordered = gathered.in_order()
+    ordered, tally = read_sentences(content.text, path.name)
     tally.lines += content.damaged_lines
     _refuse_unusable(path, tally, content.text)
     return NmeaLog(
         ordered, tally, content.damaged_lines, (*content.warnings(), *_warnings(tally)), content.text
     )
+
+
+def read_sentences(text: str, name: str) -> tuple[Ordered, Tally]:
+    """Read the sentences of a text, whatever it holds.
+
+    Parameters
+    ----------
+    text : str
+        Lines that end with a line feed.
+    name : str
+        Of the file; some loggers put the year there.
+
+    Returns
+    -------
+    ordered : Ordered
+        Quantities of each channel, and what becomes of each sentence.
+    tally : Tally
+        Counts of lines and faults.
+    """
+    tally = Tally()
+    clock = Clock(text, name, tally)
+    gathered = Gathered(tally)
+    for sentences in intact_sentences(text, tally):
+        gathered.add(sentences, clock)
+    return gathered.in_order(), tally
 
 
 def _refuse_unusable(path: Path, tally: Tally, text: str) -> None:

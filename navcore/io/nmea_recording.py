@@ -25,6 +25,7 @@ from navcore.io.nmea_readings import (
     USED,
     Channel,
     Held,
+    Ordered,
 )
 from navcore.io.nmea_sentences import ALONG_AXES
 from navcore.io.series import (
@@ -76,12 +77,9 @@ def read(path: Path) -> Recording:
     """Read one NMEA 0183 log; raises `InputError`."""
     log = read_nmea(path)
     tally, fates = log.tally, log.ordered.fates
-    found = {
-        "position": _positions(log),
-        **{name: _picked(log, name, kinds) for name, kinds in _KINDS.items()},
-    }
+    found = instruments_of(log.ordered)
     taken = {name: sources[0] for name, sources in found.items() if sources}
-    series = {name: _series(path, log, name, picked) for name, picked in taken.items()}
+    series = {name: series_of(path.name, tally.dated, name, picked) for name, picked in taken.items()}
     for picked in taken.values():
         rows = picked.held.rows
         fates[rows[fates[rows] == OTHER]] = REPEATED
@@ -116,6 +114,14 @@ def read(path: Path) -> Recording:
         tuple(told),
     )
     return Recording(**series, sources=(source,))
+
+
+def instruments_of(ordered: Ordered) -> dict[str, list[Picked]]:
+    """Readings of each quantity by instrument, the one that is taken first."""
+    return {
+        "position": _positions(ordered),
+        **{name: _picked(ordered, name, kinds) for name, kinds in _KINDS.items()},
+    }
 
 
 def _repeated(log: NmeaLog) -> Iterator[str]:
@@ -160,13 +166,13 @@ def _lines_left_out(log: NmeaLog) -> Iterator[LeftOut]:
         yield LeftOut(log.ordered.names[kind], "", _WHY[fate], count)
 
 
-def _picked(log: NmeaLog, quantity: str, kinds: Iterable[str]) -> list[Picked]:
+def _picked(ordered: Ordered, quantity: str, kinds: Iterable[str]) -> list[Picked]:
     """Readings of a quantity by instrument: of the better kind first, of one kind those with most first."""
     found: list[Picked] = []
     for kind in kinds:
         of_kind = [
             Picked(channel.address, held[quantity])
-            for channel, held in log.ordered.readings.items()
+            for channel, held in ordered.readings.items()
             if quantity in held and kind in (channel.address[2:], channel.address)
         ]
         found += sorted(of_kind, key=lambda picked: -len(picked.held.time_s))
@@ -174,22 +180,35 @@ def _picked(log: NmeaLog, quantity: str, kinds: Iterable[str]) -> list[Picked]:
     return sorted(found, key=lambda picked: quantity in ALONG_AXES and not picked.held.values[:, 2].any())
 
 
-def _series(path: Path, log: NmeaLog, quantity: str, picked: Picked) -> Series | None:
-    series = tidy(picked.held.time_s, picked.held.values, path.name, picked.address, dated=log.tally.dated)
+def series_of(name: str, dated: bool, quantity: str, picked: Picked) -> Series | None:
+    """Series of a quantity from one instrument; None where it gives nothing.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    dated : bool
+        Whether its times have a date.
+    quantity : str
+        Attribute of `Recording`.
+    picked : Picked
+        The readings.
+    """
+    series = tidy(picked.held.time_s, picked.held.values, name, picked.address, dated=dated)
     if series is None or quantity not in ALONG_AXES:
         return series
     valid = series.values[:, 2] != 0.0
     return replace(series, values=np.where(valid[:, None], series.values[:, :2], 0.0), valid=valid)
 
 
-def _positions(log: NmeaLog) -> list[Picked]:
+def _positions(ordered: Ordered) -> list[Picked]:
     """Fixes by receiver, those of the one that gives most first.
 
     From GGA or GNS, which have the height, and RMC where they are silent; from GLL only where no other is.
     """
     receivers: defaultdict[Channel, dict[str, Held]] = defaultdict(dict)
     for kind in _PLACES:
-        for (source, address), held in log.ordered.readings.items():
+        for (source, address), held in ordered.readings.items():
             if "position" in held and kind in (address[2:], address):
                 receivers[Channel(source, address[:2] if kind != address else "")][kind] = held["position"]
     for kinds in receivers.values():

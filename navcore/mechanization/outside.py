@@ -90,6 +90,55 @@ def taken_off(own: np.ndarray, coefficients: Coefficients) -> SensorErrors:
     return SensorErrors(gyro, np.column_stack([-a_e, -a_n, np.zeros(len(own))]))
 
 
+def carry_on(
+    law: Law,
+    x: np.ndarray,
+    coefficients: Coefficients,
+    log: ReferenceErrors,
+    steps: int,
+    step_s: float,
+    sensors: SensorErrors | None = None,
+) -> tuple[np.ndarray, bool]:
+    """Carry damped minus recorded on by some steps, with the kernel of a run on the whole recording.
+
+    Parameters
+    ----------
+    law : Law
+        Goes on from call to call; its place among the log's epochs is the caller's.
+    x : ndarray, shape (7,)
+        Errors of `ErrorModelRun`; they go on in place.
+    coefficients : Coefficients
+        Along the output, at steps 0..``steps``.
+    log : ReferenceErrors
+        By times from the first step.
+    steps : int
+        Steps, at least one.
+    step_s : float
+        Their length, s.
+    sensors : SensorErrors, optional
+        What an INS's own damping did (`taken_off`).
+
+    Returns
+    -------
+    rows : ndarray, shape (steps, 12)
+        At the begin of each step, columns of `navcore.mechanization.recorder`.
+    diverged : bool
+        The errors have left the range of the linear model.
+    """
+    run = ErrorModelRun(
+        step_s=step_s,
+        steps=steps + 1,
+        coefficients=coefficients,
+        sensors=sensors or SensorErrors(np.zeros((1, 3)), np.zeros((1, 3))),
+        reference=log,
+        law=law,
+        x=x,
+        recorder=make_recorder(steps + 1, step_s, step_s),
+    )
+    run.advance(steps)
+    return run.recorder.rows[: run.position], run.diverged
+
+
 class Output(NamedTuple):
     """What an INS gives out at one time, SI and radians."""
 
@@ -158,17 +207,8 @@ class OutsideDamping:
         log = ReferenceErrors(
             time_s, np.array([self._error] * 2), np.full(2, heard), self.body_frame, self.hold_s
         )
-        run = ErrorModelRun(
-            step_s=self.step_s,
-            steps=2,
-            coefficients=coefficients(_between(now, after, self.step_s), self.earth, coupled=True),
-            sensors=SensorErrors(np.zeros((1, 3)), np.zeros((1, 3))),
-            reference=log,
-            law=self.law,
-            x=self.x,
-            recorder=make_recorder(2, self.step_s, 2.0 * self.step_s),
-        )
-        run.advance(1)
+        along = coefficients(_between(now, after, self.step_s), self.earth, coupled=True)
+        carry_on(self.law, self.x, along, log, 1, self.step_s)
 
     def damped(self, now: Output) -> Output:
         """Return an output as it would be with the damping in force."""

@@ -78,7 +78,7 @@ class InsTrack(TrackMotion):
         heading = recording.heading
         if heading is None:
             heading = kept(
-                ("course of ins", recorded_state(self), self.clock_s, self.jumps), lambda: _course(position)
+                ("course of ins", recorded_state(self), self.clock_s, self.jumps), lambda: course_of(position)
             )
         return Streams(recording, position, heading, recording.attitude)
 
@@ -162,8 +162,8 @@ def _longest_piece(recording: Recording, found: tuple[Jump, ...]) -> Recording:
     return replace(recording, **{name: cut(one) for name, one in recording.quantities().items()})
 
 
-def _course(position: Series) -> Series:
-    """Course over ground of the positions, from the two beside each."""
+def course_of(position: Series) -> Series:
+    """Course over ground of positions, from the two beside each."""
     lat, lon = position.values[:, 0], np.unwrap(position.values[:, 1])
     meridian, prime_vertical = WGS84.radii(float(np.median(lat)))
     north = np.gradient(lat * meridian, position.time_s)

@@ -206,7 +206,7 @@ class TrackMotion(MotionParameters):
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
         key = "smoothed track", recorded_state(self), self
-        return kept(key, lambda: _smooth(self.streams(), files, self.smoothing_s))
+        return kept(key, lambda: smooth_streams(self.streams(), files, self.smoothing_s))
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ def _streams(recording: Recording, file: object) -> Streams:
     return Streams(recording, recording.position, recording.heading, recording.attitude)
 
 
-def _smooth(streams: Streams, files: tuple[str, ...], smoothing_s: float) -> _Smoothed:
+def smooth_streams(streams: Streams, files: tuple[str, ...], smoothing_s: float) -> _Smoothed:
     """Fit the splines: 10 h at 1 Hz take most of a second."""
     return _Smoothed(
         shared_window(streams.series()),
@@ -271,11 +271,7 @@ class _Path:
                     Text("{found}; at least {fewest_fixes} are needed", found=gap, fewest_fixes=FEWEST_FIXES),
                 )
             )
-        lat, lon = position.values[:, 0], np.unwrap(position.values[:, 1])
-        self._origin = np.array([lat[0], lon[0]])
-        meridian, prime_vertical = WGS84.radii(lat[0])
-        self._metres = np.array([meridian, prime_vertical * np.cos(lat[0])])
-        metres = (np.column_stack([lat, lon]) - self._origin) * self._metres
+        self._origin, self._metres, metres = in_metres(position)
         _refuse_outliers(position, metres)
         self._spline = smoothed_columns(position.time_s, metres, smoothing_s)
         if velocity is not None and velocity.tabled and smoothing_s > 0.0:
@@ -330,16 +326,45 @@ class _Path:
             yield breaks, coefficients
 
 
-def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
-    """Refuse fixes that lie off the line between their neighbours by more than a vehicle can move."""
+def in_metres(position: Series) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Fixes as north and east of the first one, with that one (rad) and the metres of a radian of each."""
+    lat, lon = position.values[:, 0], np.unwrap(position.values[:, 1])
+    origin = np.array([lat[0], lon[0]])
+    meridian, prime_vertical = WGS84.radii(lat[0])
+    radii = np.array([meridian, prime_vertical * np.cos(lat[0])])
+    return origin, radii, (np.column_stack([lat, lon]) - origin) * radii
+
+
+def outliers(position: Series, metres: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Find fixes that lie off the line between their neighbours by more than a vehicle can move.
+
+    Parameters
+    ----------
+    position : Series
+        Fixes.
+    metres : ndarray, shape (n, 2)
+        The same in metres.
+
+    Returns
+    -------
+    places : ndarray of int
+        Of the fixes; the worst of each neighbourhood, for one bad fix also throws its neighbours off.
+    distance : ndarray, shape (places,)
+        From the line, m.
+    """
     before, after = np.diff(position.time_s)[:-1], np.diff(position.time_s)[1:]
     share = (before / (before + after))[:, None]
     distance = np.hypot(*(metres[1:-1] - metres[:-2] - share * (metres[2:] - metres[:-2])).T)
     reachable = np.maximum(OUTLIER_M, 0.5 * OUTLIER_ACCELERATION * before * after)
     excess = np.where(distance > reachable, distance / reachable, 0.0)
-    # One bad fix also throws its neighbours off; the worst of each neighbourhood is the one to name.
     padded = np.pad(excess, 1)
     worst = np.flatnonzero((excess > 0.0) & (excess >= padded[:-2]) & (excess >= padded[2:]))
+    return worst + 1, distance[worst]
+
+
+def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
+    """Refuse fixes that lie off the line between their neighbours by more than a vehicle can move."""
+    worst, distance = outliers(position, metres)
     if worst.size == 0:
         return
     faults = [
@@ -349,11 +374,11 @@ def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
             position.source,
             Text(
                 "the position at {utc_text} lies {distance:.0f} m off its neighbours: leave it out",
-                utc_text=utc_text(float(position.time_s[i + 1])),
-                distance=distance[i],
+                utc_text=utc_text(float(position.time_s[place])),
+                distance=far,
             ),
         )
-        for i in worst[:_MOST_FAULTS]
+        for place, far in zip(worst[:_MOST_FAULTS], distance, strict=False)
     ]
     if worst.size > _MOST_FAULTS:
         faults.append(

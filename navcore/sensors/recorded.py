@@ -1,6 +1,7 @@
 """A recorded log as the reference: its error is what it says minus the true velocity of the motion."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -101,12 +102,38 @@ def recorded_errors(
         A file is missing or wrong, it holds no speed, or it is shorter than the run.
     """
     recording = log_recording(reference)
-    series, along_axes = log_series(reference, recording)
+    series, _ = log_series(reference, recording)
     window = shared_window(_streams(reference))
     start = window.start_s if start_utc is None else start_utc
     require_cover(window, start, duration_s, Text("the log"), reference.file)
     require_no_gap(_streams(reference), start, duration_s, _MOST_SILENT, reference.file)
-    elapsed = series.time_s - start
+    errors = log_errors(reference, recording, truth, start, duration_s)
+    time_s, error, valid = with_silence(
+        errors.time_s, errors.error, errors.valid, series.interval_s, errors.hold_s
+    )
+    return replace(errors, time_s=time_s, error=error, valid=valid)
+
+
+def log_errors(
+    reference: Reference, recording: Recording, truth: Truth, start_s: float, duration_s: float
+) -> ReferenceErrors:
+    """Errors of a log at the epochs of its readings; that it falls silent is not among them.
+
+    Parameters
+    ----------
+    reference : Reference
+        How the readings are taken.
+    recording : Recording
+        With the log's speeds, as `navcore.sensors.log_files.log_series` chooses them.
+    truth : Truth
+        True motion, from ``start_s`` on.
+    start_s : float
+        UTC of its first row, s.
+    duration_s : float
+        Time within which readings are taken, s.
+    """
+    series, along_axes = log_series(reference, recording)
+    elapsed = series.time_s - start_s
     within = (elapsed >= 0.0) & (elapsed <= duration_s)
     time_s, values = elapsed[within], series.values[within]
     velocity, heading = horizontal_state(truth, time_s)
@@ -120,23 +147,30 @@ def recorded_errors(
     valid = series.valid[within] & in_service(reference.outage, time_s)
     valid &= ~(np.hypot(values[:, 0], values[:, 1]) < reference.min_speed_mps)
     error = np.where(valid[:, None], values - velocity + event_velocity(reference.event, time_s), 0.0)
-    hold_s = hold_time(series.interval_s)
-    time_s, error, valid = _with_silence(time_s, error, valid, series.interval_s, hold_s)
     return ReferenceErrors(
         time_s=time_s,
         error=error,
         valid=valid,
         body_frame=along_axes and reference.frame == "body",
-        hold_s=hold_s,
+        hold_s=hold_time(series.interval_s),
     )
 
 
-def _with_silence(
+def with_silence(
     time_s: np.ndarray, error: np.ndarray, valid: np.ndarray, interval_s: float, hold_s: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Epochs with an invalid one where a reading is missing that begins a gap longer than a reading is held.
 
-    The whole recording is at hand: that the log falls silent is known at once, not when a reading is too old.
+    What comes after is at hand: that the log falls silent is known at once, not when a reading is too old.
+
+    Parameters
+    ----------
+    time_s, error, valid : ndarray
+        As of `ReferenceErrors`.
+    interval_s : float
+        Usual time between two readings, s.
+    hold_s : float
+        A reading older than this counts as missing, s.
     """
     gaps = np.flatnonzero(np.diff(time_s) > hold_s)
     if not gaps.size or interval_s <= 0.0:

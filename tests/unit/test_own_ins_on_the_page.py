@@ -4,12 +4,14 @@ from pathlib import Path
 
 import pytest
 
+from navcore.engine.drivers.outside import prepared
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
 from schuler_bench.session.own_ins import JUDGED, Taken, described, own_scenario, sentence, taken
 from schuler_bench.session.recordings import recorded_scenario
 from schuler_bench.session.uploads import Uploads
+from tests.sentences import seconds
 from tests.unit.test_own_ins_faults import recorded
 
 
@@ -70,3 +72,16 @@ def test_a_scenario_on_an_ins_gives_way_to_a_track(contents: dict[str, bytes], t
     assert not tracked.on_ins and tracked.motion.kind == "track"
     with pytest.raises(InputError, match="motion: must be left out"):
         Scenario.parse(scenario.canonical() | {"motion": {"kind": "static"}})
+
+
+def test_one_file_with_all_of_it_is_ins_and_log(tmp_path: Path) -> None:
+    uploads = Uploads(tmp_path / "session")
+    text = "".join(f"{line}\n" for second in seconds(600) for line in second)
+    uploads.add("line.nmea", text.encode())
+    roles = taken(uploads)
+    assert roles == Taken(("line.nmea",), ("line.nmea",)) and not roles.missing
+    run = simulate(own_scenario(uploads, roles)[0])
+    assert [one.status for one in run.methods] == ["ok"] * 4
+    assert run.scenario.reference.frame == "enu", "as it was given"
+    prepared_scenario, env, _ = prepared(run.scenario)
+    assert prepared_scenario.reference.frame == "body" and env.reference.body_frame

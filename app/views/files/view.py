@@ -8,6 +8,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.opening import METRICS, SCENARIO
 from schuler_bench.shell.view import Frame, Tab, View
 from schuler_bench.views.files.columns import Columns
+from schuler_bench.views.files.live import LivePart
 from schuler_bench.views.files.own_ins import OwnIns
 
 _ASIDE = Text(
@@ -28,6 +29,7 @@ class FilesView(View):
         super().__init__(frame)
         self._columns = Columns(frame, self._mark)
         self._own = OwnIns(frame)
+        self._live = LivePart(frame)
         add, opening = frame.commands.register, frame.opening
         add("save", lambda _: opening.give_file(SCENARIO), Text("Save the scenario (TOML)"), "Ctrl+S")
         add("save-numbers", lambda _: opening.give_file(METRICS), Text("Save the numbers (JSON)"))
@@ -38,6 +40,7 @@ class FilesView(View):
         """Make the widgets."""
         gui, opening = self.frame.gui, self.frame.opening
         with tab:
+            self._live.build(-1)
             gui.add_html(notices.heading(Text("Run on recordings")), order=0)
             kinds = Text(
                 "Speed log, track and heading: NMEA 0183, CSV, Parquet, MAT or npz, one file "
@@ -85,6 +88,10 @@ class FilesView(View):
     def draw(self, found: Shown) -> None:
         """Say what damping would have changed, of a run on a ship's own INS."""
         self._own.draw(found.run)
+
+    def close(self) -> None:
+        """The browser has gone."""
+        self._live.close()
 
     def _mark(self) -> None:
         """Give the button that comes next the colour of the main one: a file, its columns or the run."""

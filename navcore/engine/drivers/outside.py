@@ -25,6 +25,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
+from navcore.io.series import Series
 from navcore.mechanization.outside import own_corrections, taken_off
 from navcore.mechanization.recorder import make_recorder, output_steps
 from navcore.motion.ins_track import InsTrack
@@ -57,7 +58,7 @@ def settled(scenario: Scenario) -> Scenario:
             series, along_axes = log_series(log, recording)
         except InputError as error:
             raise error.located("", "reference.") from None
-        own_heading = recording.heading is not None
+        own_heading = recording.heading is not None and not _is_of_ins(recording.heading, motion)
         if along_axes and not own_heading:
             if not _has_heading(motion):
                 raise InputError(Fault("", "reference.file", log.file, _no_heading(series.source)))
@@ -69,6 +70,15 @@ def settled(scenario: Scenario) -> Scenario:
         place = {"lat_deg": lat_deg, "lon_deg": (lon_deg + 180.0) % 360.0 - 180.0}
         changed["site"] = scenario.site.model_copy(update=place)
     return scenario.model_copy(update=changed).with_sensors() if changed else scenario
+
+
+def _is_of_ins(heading: Series, motion: InsTrack) -> bool:
+    """Whether a heading beside the log is the INS's own: one file holds both."""
+    try:
+        own = motion.recording().heading
+    except InputError as error:
+        raise error.located("", f"{motion.block}.") from None
+    return own is not None and (own.file, own.what) == (heading.file, heading.what)
 
 
 def _has_heading(motion: InsTrack) -> bool:
