@@ -154,7 +154,7 @@ def _row(name: str, output: np.ndarray, color: str) -> str:
     if not math.isfinite(lat):
         return row([cell(_named(name, color)), cell(Text("diverged"))])
     place = Text(
-        "{lat:.5f}° {side}, {lon:.5f}° {other}",
+        "{lat:.5f}° {side}<br>{lon:.5f}° {other}",
         lat=abs(lat) / DEG,
         side="S" if lat < 0.0 else "N",
         lon=abs(lon) / DEG,
