@@ -69,6 +69,7 @@ _READERS = (
     "navcore.io.csv",
     "navcore.io.gpx",
     "navcore.io.nmea_recording",
+    "navcore.io.stdbin",
     "navcore.io.tables",
     "navcore.scenario.file",
     "pyarrow.csv",

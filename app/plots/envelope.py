@@ -42,6 +42,8 @@ class Envelope:
         What it covers and what it does not.
     old : bool
         It is of an earlier scenario.
+    with_recorded : bool
+        The first of the methods is the INS as it was recorded.
     """
 
     t_s: np.ndarray
@@ -50,6 +52,7 @@ class Envelope:
     words: str
     details: tuple[str, ...] = ()
     old: bool = False
+    with_recorded: bool = False
 
     @property
     def label(self) -> str:
@@ -91,6 +94,7 @@ _COVERS = Text(
     "One standard deviation of the errors, by covariance along the motion: random errors of IMU and log, and "
     "biases and initial errors with their standard deviations."
 )
+_BY_INS = Text("Standard deviations that the INS recorded of its output.")
 _MOST_NAMED = 2
 
 
@@ -131,3 +135,16 @@ def covariance_envelope(scenario: Scenario, bands: Bands) -> Envelope:
     if missing:
         words += Text("; no covariance: {names}", names=names)
     return Envelope(bands.t_s, tuple(low), tuple(high), words, tuple(details))
+
+
+def own_band(run: Run) -> Envelope | None:
+    """Band of the standard deviations that a recorded INS gives its own output; None where it gives none."""
+    recorded = None if run.against is None else run.against.recorded
+    if recorded is None or recorded.sigma is None:
+        return None
+    distance = np.hypot(recorded.sigma[:, 5], recorded.sigma[:, 6])
+    edge = with_lengths(np.column_stack([recorded.sigma, distance]))
+    low = np.where(np.arange(edge.shape[1]) < len(COMPONENTS), -edge, 0.0)
+    others = (None,) * (len(run.lines) - 1)
+    words = Text("±1σ by the INS itself")
+    return Envelope(recorded.t_s, (low, *others), (edge, *others), words, (_BY_INS,), with_recorded=True)

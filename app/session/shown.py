@@ -19,7 +19,7 @@ from navcore.quantities import NAMES
 from navcore.scenario.model import Scenario
 from schuler_bench.editing.form import field_words
 from schuler_bench.jobs.asking import Asker
-from schuler_bench.plots.envelope import Envelope
+from schuler_bench.plots.envelope import Envelope, own_band
 from schuler_bench.session.display import Display
 from schuler_bench.session.history import differences
 from schuler_bench.session.pins import LONGEST_NAME, Pin
@@ -88,7 +88,7 @@ def shown(session: Session) -> Shown | None:
         baseline,
         None,
         _placed(verified_beside(session.verifier, run.scenario), display),
-        session.envelopes.beside(run.scenario, display.envelope),
+        session.envelopes.beside(run.scenario, display.envelope) or own_band(run),
         selected,
     )
 

@@ -90,6 +90,8 @@ def check_log(path: Path, column_map: ColumnMap | None = None) -> FileReport:
         "out_of_order": source.jitter,
         "quantities": quantities,
     }
+    if recording.deviations:
+        details["deviations"] = {name: _deviation(name, one) for name, one in recording.deviations.items()}
     return FileReport(
         str(path),
         source.kind,
@@ -202,9 +204,42 @@ def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]
         )
         words.append(f"  {NAMES[name]} ({entry['source']}): {samples}")
         words += [f"    {_extent(key, entry[key])}" for key in entry if key.endswith(("_deg", "_kn", "_mps"))]
+    words += [_deviation_text(name, one) for name, one in recording.deviations.items()]
     words += [Text("  {choice}", choice=choice) for choice in source.choices]
     clock = clock_text(recording)
     return [*words, Text("  {clock}", clock=clock)] if clock else words
+
+
+def _deviation(name: str, series: Series) -> dict[str, Any]:
+    """Source, count and medians of what an instrument says of its own readings."""
+    unit, size = DEVIATION_UNITS[name]
+    medians = np.median(series.values, axis=0) / size
+    return {
+        "source": series.what,
+        "count": int(series.time_s.size),
+        f"median_{unit}": [round(float(one), 6) for one in medians],
+    }
+
+
+DEVIATION_UNITS = {
+    "position": ("m", 1.0),
+    "velocity": ("mps", 1.0),
+    "heading": ("deg", DEG),
+    "attitude": ("deg", DEG),
+}
+"""Unit in which the deviation of a quantity is told, and its size."""
+
+
+def _deviation_text(name: str, series: Series) -> str:
+    unit, size = DEVIATION_UNITS[name]
+    medians = np.median(series.values, axis=0) / size
+    return Text(
+        "  standard deviation, {quantity} ({source}): median {values} {unit}",
+        quantity=NAMES[name],
+        source=series.what,
+        values=" / ".join(f"{one:.3g}" for one in medians.tolist()),
+        unit="m/s" if unit == "mps" else unit,
+    )
 
 
 def _extent(key: str, extent: list[float]) -> str:

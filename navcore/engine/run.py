@@ -103,8 +103,8 @@ class MethodRun:
         The navigation solution of a strapdown run, columns
         `navcore.mechanization.strapdown.records.NAVIGATION`.
     sigma : ndarray, shape (m, 7), or None
-        Standard deviations that a Kalman filter gives its own errors at the output rows, for the first seven
-        of `navcore.quantities.NAMES`; None for every other method.
+        Standard deviations that a Kalman filter, or a recorded INS, gives its own errors at the output rows,
+        for the first seven of `navcore.quantities.NAMES`; None for every other method.
     growth_per_s : float or None
         Fastest growth of the whole system as the law is sampled, of one channel with the `channel` fidelity,
         1/s; None where no closed loop stands for the method.

@@ -33,6 +33,9 @@ _MEASURES = {
     "heading": _Measure(Text("heading"), "°", DEG, 2.0),
     "attitude": _Measure(Text("pitch and roll"), "°", DEG, 1.0),
     "height": _Measure(Text("height"), "m", 1.0, 30.0),
+    "deviation_m": _Measure(Text("deviation of the position"), "m", 1.0, 100.0),
+    "deviation_mps": _Measure(Text("deviation of the velocity"), "m/s", 1.0, 1.0),
+    "deviation_rad": _Measure(Text("deviation of an angle"), "°", DEG, 1.0),
 }
 
 
@@ -80,6 +83,9 @@ _OF_STEMS = {
     "lat": "position", "lon": "position", "height": "height", "heading": "heading", "cog": "heading",
     "pitch": "attitude", "roll": "attitude", "speed": "water", "speed_starboard": "water", "ground": "ground",
     "ground_starboard": "ground", "sog": "velocity", "ve": "velocity", "vn": "velocity",
+    "north_sigma": "deviation_m", "east_sigma": "deviation_m", "ve_sigma": "deviation_mps",
+    "vn_sigma": "deviation_mps", "heading_sigma": "deviation_rad", "pitch_sigma": "deviation_rad",
+    "roll_sigma": "deviation_rad",
 }  # fmt: skip
 
 

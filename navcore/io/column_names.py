@@ -45,6 +45,12 @@ def _of(dimension: str, low: float, high: float, unit: str, names: str) -> Quant
     return Quantity(dimension, low, high, unit, tuple(names.split()))
 
 
+def _deviation_names(*bases: str) -> str:
+    """Names of the standard deviation of a quantity: ``lat_sigma``, ``heading_std``, ``std_heading``, ..."""
+    words = ("sigma", "std", "stdev", "stddev", "std_dev", "sd", "standard_deviation", "standard_error")
+    return " ".join(f"{base}_{word} {word}_{base}" for word in words for base in bases)
+
+
 QUANTITIES = {
     "lat": _of(
         "angle", -90, 90, "deg",
@@ -102,6 +108,18 @@ QUANTITIES = {
         "true_track pl_crs gcrs bearing kurs_uber_grund kurs_ueber_grund kug kueg kurs route_fond route_sol "
         "rumbo_fondo",
     ),
+    **{
+        stem: _of(dimension, 0.0, 1e6 if dimension == "length" else 360.0, unit, _deviation_names(*bases))
+        for stem, dimension, unit, bases in (
+            ("north_sigma", "length", "m", ("lat", "latitude", "north", "position_north", "pos_n")),
+            ("east_sigma", "length", "m", ("lon", "longitude", "east", "position_east", "pos_e")),
+            ("ve_sigma", "speed", "mps", ("ve", "v_east", "velocity_east", "east_velocity", "v_e")),
+            ("vn_sigma", "speed", "mps", ("vn", "v_north", "velocity_north", "north_velocity", "v_n")),
+            ("heading_sigma", "angle", "deg", ("heading", "yaw", "true_heading", "hdg")),
+            ("pitch_sigma", "angle", "deg", ("pitch",)),
+            ("roll_sigma", "angle", "deg", ("roll",)),
+        )
+    },
 }  # fmt: skip
 """By what the quantity is called here; ``speed`` is through the water, ``ground`` over it, along the axes."""
 _IN_MPS = {"speed_made_good": "sog", "pl_spd": "sog", "pl_sow": "speed"}

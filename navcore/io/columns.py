@@ -222,11 +222,20 @@ def table_recording(table: Table) -> Recording:
         "heading": series("heading_deg", "heading"),
         "attitude": series("pitch_deg+roll_deg", "pitch", "roll"),
     }
+    deviations = {
+        "position": series("lat_sigma+lon_sigma", "north_sigma", "east_sigma"),
+        "velocity": series("ve_sigma+vn_sigma", "ve_sigma", "vn_sigma"),
+        "heading": series("heading_sigma", "heading_sigma"),
+        "attitude": series("pitch_sigma+roll_sigma", "pitch_sigma", "roll_sigma"),
+    }
     if not any(quantities.values()):
         raise InputError(
             Fault(table.where, "", None, Text("every cell of the columns that are used is empty"))
         )
-    return Recording(**quantities, sources=(_account(table),))
+    known = {
+        name: one for name, one in deviations.items() if one is not None and quantities[name] is not None
+    }
+    return Recording(**quantities, sources=(_account(table),), deviations=known)
 
 
 def _account(table: Table) -> SourceReport:

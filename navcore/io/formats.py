@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 FORMATS: list[Any] = [
     "navcore.io.tables",
+    "navcore.io.stdbin",
     "navcore.io.gpx",
     "navcore.io.nmea_recording",
     "navcore.io.csv",

@@ -29,6 +29,10 @@ QUANTITY_NAMES = {
     "ground": Text("speed over ground along axes"),
     "heading": Text("heading"),
     "attitude": Text("pitch and roll"),
+    "position_sigma": Text("deviation of the position"),
+    "velocity_sigma": Text("deviation of the velocity"),
+    "heading_sigma": Text("deviation of the heading"),
+    "attitude_sigma": Text("deviation of pitch and roll"),
 }
 """Names of what sentences hold."""
 _CLOCK_WARNING_S = 5.0

@@ -29,6 +29,8 @@ def _pashr(fields: Fields) -> Decoded:
         "time_of_day": np.where(attitude, time_s, math.nan),
         "heading": np.where(attitude, fields.headings(1), math.nan),
         "attitude": _attitude(fields, 4, 3, attitude),
+        "heading_sigma": _sigma(fields, (8,), attitude, DEG)[:, 0],
+        "attitude_sigma": _sigma(fields, (7, 6), attitude, DEG),
     }
 
 
@@ -87,23 +89,37 @@ def _prdid(fields: Fields) -> Decoded:
 def _pixse(fields: Fields) -> Decoded:
     """Output of an iXblue (Exail) INS beside its HDT: ``PIXSE,POSITI``, ``SPEED_``, ``ATITUD``, ``TIME__``.
 
-    Roll counts port up and pitch bow down in it. Other messages of the family are passed over.
+    Roll counts port up and pitch bow down in it. ``STDHRP``, ``STDPOS`` and ``STDSPD`` are their standard
+    deviations. Other messages of the family are passed over.
     """
-    names = ("POSITI", "SPEED_", "ATITUD", "TIME__")
-    placed, moving, leaning, timed = (fields.are(0, name) for name in names)
+    names = ("POSITI", "SPEED_", "ATITUD", "TIME__", "STDHRP", "STDPOS", "STDSPD")
+    placed, moving, leaning, timed, turning_std, place_std, speed_std = (
+        fields.are(0, name) for name in names
+    )
     lat, lon = (fields.numbers(place, -most, most) for place, most in ((1, 90.0), (2, 360.0)))
     position = np.column_stack([lat * DEG, lon * DEG, fields.numbers(3, -1e4, 1e5)])
     velocity = np.column_stack([fields.speeds(place, 1.0) for place in (1, 2)])
     with np.errstate(invalid="ignore"):
         attitude = _attitude(fields, 2, 1, leaning) * (-1.0, 1.0)
-    told = placed | moving | leaning | timed
+    told = placed | moving | leaning | timed | turning_std | place_std | speed_std
     return {
         "role": np.where(told, 0, OTHER_MESSAGE),
         "time_of_day": np.where(timed, fields.of(value.makers_time, 1), math.nan),
         "position": np.where(placed[:, None], position, math.nan),
         "velocity": np.where(moving[:, None], velocity, math.nan),
         "attitude": attitude,
+        "position_sigma": _sigma(fields, (1, 2), place_std, 1.0),
+        "velocity_sigma": _sigma(fields, (1, 2), speed_std, 1.0),
+        "heading_sigma": _sigma(fields, (1,), turning_std, DEG)[:, 0],
+        "attitude_sigma": _sigma(fields, (3, 2), turning_std, DEG),
     }
+
+
+def _sigma(fields: Fields, places: tuple[int, ...], given: np.ndarray, unit: float) -> np.ndarray:
+    """Standard deviations of the fields at some places, SI, shape (n, k); NaN where one is missing."""
+    values = np.column_stack([fields.numbers(place, 0.0, 1e6) for place in places])
+    whole = given & np.isfinite(values).all(axis=1)
+    return np.where(whole[:, None], values * unit, math.nan)
 
 
 def _attitude(fields: Fields, pitch: int, roll: int, given: np.ndarray) -> np.ndarray:

@@ -1,7 +1,7 @@
 """From the sentences of an NMEA 0183 log to its quantities, and an account of all its lines."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -45,6 +45,7 @@ _KINDS = {
     "velocity": ("RMC", "VTG", "PIXSE"), "water": ("VBW", "VHW"), "ground": ("VBW",), "heading": _HEADINGS,
     "attitude": _ATTITUDES,
 }  # fmt: skip
+_DEVIATIONS = ("position", "velocity", "heading", "attitude")
 _PLACES = ("GGA", "GNS", "RMC", "GLL", "PIXSE")
 _MOST_REPEATED = 0.01
 """Share of a kind; fewer are told in JSON alone."""
@@ -80,7 +81,9 @@ def read(path: Path) -> Recording:
     found = instruments_of(log.ordered)
     taken = {name: sources[0] for name, sources in found.items() if sources}
     series = {name: series_of(path.name, tally.dated, name, picked) for name, picked in taken.items()}
-    for picked in taken.values():
+    apart = _deviations(log.ordered, taken)
+    deviations = {name: series_of(path.name, tally.dated, name, picked) for name, picked in apart.items()}
+    for picked in (*taken.values(), *apart.values()):
         rows = picked.held.rows
         fates[rows[fates[rows] == OTHER]] = REPEATED
         fates[rows[first_of_each_time(picked.held.time_s)]] = USED
@@ -113,7 +116,24 @@ def read(path: Path) -> Recording:
         ),
         tuple(told),
     )
-    return Recording(**series, sources=(source,))
+    known = {name: one for name, one in deviations.items() if one is not None}
+    return Recording(**series, sources=(source,), deviations=known)
+
+
+def _deviations(ordered: Ordered, taken: Mapping[str, Picked]) -> dict[str, Picked]:
+    """Standard deviations by the quantity: of the instrument that is taken, or of another sentence."""
+    found: dict[str, Picked] = {}
+    for name in _DEVIATIONS:
+        if name not in taken:
+            continue
+        own = [
+            Picked(channel.address, held[f"{name}_sigma"])
+            for channel, held in ordered.readings.items()
+            if f"{name}_sigma" in held
+        ]
+        if own:
+            found[name] = min(own, key=lambda one: one.address != taken[name].address)
+    return found
 
 
 def instruments_of(ordered: Ordered) -> dict[str, list[Picked]]:

@@ -107,11 +107,14 @@ def load(
     if faults:
         raise InputError(faults)
     quantities: dict[str, Series] = {}
+    deviations: dict[str, Series] = {}
     for part in parts:
-        quantities = part.quantities() | quantities
+        own = part.quantities()
+        deviations |= {name: one for name, one in part.deviations.items() if name not in quantities}
+        quantities = own | quantities
     if len({series.dated for series in quantities.values()}) > 1:
         raise InputError(Fault(where, field, None, _MIXED_DATES))
-    return Recording(**quantities, sources=_with_choices(parts))
+    return Recording(**quantities, sources=_with_choices(parts), deviations=deviations)
 
 
 def _with_choices(parts: list[Recording]) -> tuple[SourceReport, ...]:

@@ -244,6 +244,9 @@ class SourceReport:
     choices: tuple[str, ...] = ()
 
 
+_NO_STREAMS = ("sources", "deviations")
+
+
 @dataclass(frozen=True)
 class Recording:
     """Streams of one or several files; a quantity that none holds is None.
@@ -257,6 +260,9 @@ class Recording:
     attitude : Series, columns pitch, roll (rad)
     sources : tuple of SourceReport
         One for each file.
+    deviations : dict of Series
+        Standard deviations that an instrument gives its own readings, by the quantity: of the position north,
+        east (m), of the velocity E, N (m/s), of the heading (rad), of the attitude pitch, roll (rad).
     """
 
     position: Series | None = None
@@ -266,10 +272,11 @@ class Recording:
     heading: Series | None = None
     attitude: Series | None = None
     sources: tuple[SourceReport, ...] = field(default=())
+    deviations: dict[str, Series] = field(default_factory=dict)
 
     def quantities(self) -> dict[str, Series]:
         """Return what there is, by attribute name."""
-        streams = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "sources"}
+        streams = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _NO_STREAMS}
         return {name: series for name, series in streams.items() if series is not None}
 
     @property

@@ -45,7 +45,8 @@ class InsTrack(TrackMotion):
     def _recording(self) -> Recording:
         recording = load(self.file or (), field="file", map_file=self.map)
         streams = {name: one.shifted(self.clock_s) for name, one in recording.quantities().items()}
-        recording = replace(recording, **streams)
+        apart = {name: one.shifted(self.clock_s) for name, one in recording.deviations.items()}
+        recording = replace(recording, **streams, deviations=apart)
         position = position_of(recording, self.file)
         if position.interval_s > LONGEST_INTERVAL_S:
             raise InputError(Fault("", "file", self.file, _too_slow(position)))

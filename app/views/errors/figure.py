@@ -223,7 +223,8 @@ def _with_band(
 ) -> UplotFigure:
     """Put the envelope's edges behind all curves, and a band between each pair."""
     curves, bands = list(plot.curves), []
-    count, first = len(run.methods), len(run.lines) - len(run.methods)
+    shown = run.lines if envelope.with_recorded else run.methods
+    count, first = len(shown), len(run.lines) - len(shown)
     edges = zip(envelope.low[:count], envelope.high[:count], strict=True)
     for index, (low, high) in enumerate(edges, start=first):
         if low is None or high is None or curves[index].state == "hidden":

@@ -18,6 +18,7 @@ from navcore.engine.drivers.common import (
 from navcore.engine.drivers.linear import run_methods
 from navcore.engine.environment import Environment, environment, start_utc
 from navcore.engine.ins_checks import already_damped, require_units
+from navcore.engine.own_deviations import own_deviations
 from navcore.engine.reference_errors import RecordedErrors, recorded_errors_of
 from navcore.engine.run import RECORDED_PLACE, Against, MethodRun, Run
 from navcore.engine.to_log import recorded_to_log
@@ -122,6 +123,7 @@ def run_outside(
         first, *methods = (
             against_reference(one, recorded, output_s, truth, watched) for one in (first, *methods)
         )
+        first = replace(first, sigma=_deviations(placed, env, first))
         against = Against("truth", len(recorded.time_s), recorded.not_known, first, difference)
     return replace(
         found,
@@ -211,6 +213,15 @@ def _with_output(method: MethodRun, env: Environment, step_s: float, scenario: S
     if not motion.has_heading:
         output[:, 4] = np.nan
     return replace(method, output=output, moved=method.rows[:, : len(COMPONENTS)].copy())
+
+
+def _deviations(scenario: Scenario, env: Environment, first: MethodRun) -> np.ndarray | None:
+    """Standard deviations that the INS gives its own output, at the output rows."""
+    motion = scenario.motion
+    assert isinstance(motion, InsTrack)
+    steps = np.rint(first.t_s / scenario.run.step_s).astype(np.int64)
+    heading = env.truth_half.at(2 * steps)[:, HEADING]
+    return own_deviations(motion.recording(), (start_utc(scenario) or 0.0) + first.t_s, heading)
 
 
 def unknown_errors(scenario: Scenario) -> frozenset[str]:
