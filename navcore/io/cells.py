@@ -13,11 +13,19 @@ from navcore.foundation.text import Text
 from navcore.io.columns import limited
 from navcore.io.stamps import StampReader, day_comes_first
 from navcore.io.times.counts import Ambiguous, read_counts
+from navcore.io.written_units import unaccented
 
 _EMPTY = frozenset(("", "-", "--", "na", "n/a", "null", "none"))
 _HEMISPHERE = re.compile(r"[\d.]{1,20}[ \d.'\"°:]{0,30} ?[NSEWnsew]")
 _NUMBER = re.compile(r"\d{1,9}(?:\.\d{0,15})?")
 _DAY = 86400.0
+_SAYS_NOTHING = re.compile(
+    r"(?<![^\W\d_])(?:(?:mon|tue|wed|thu|fri|sat|sun|mo|di|mi|do|fr|sa|so|lun|mar|mer|jeu|ven|sam|dim|mie|jue|"
+    r"vie|sab|dom)[^\W\d_]{0,9}|utc|gmt|z|t|um|uhr|at|on|à|le)(?![^\W\d_])"
+)
+"""Words beside a time that do not change it: days of the week, and UTC, which is taken anyway."""
+_UNREAD = re.compile(r"[a-z0-9]")
+"""What is left of a cell holds none of these: a zone such as EDT shifts the time, a number may be a date."""
 
 
 def is_empty(cell: str) -> bool:
@@ -147,7 +155,10 @@ def _written_times(
                     Text("{where}, row {rows}", where=where, rows=rows[index]),
                     name,
                     cell,
-                    Text("is not an ISO 8601 time"),
+                    Text(
+                        "is not an ISO 8601 time, nor one of a logger that is understood whole: write it as "
+                        "in 2024-05-17T09:30:00+02:00, or say time.unit and time.zone by a map"
+                    ),
                 )
             )
         else:
@@ -177,7 +188,9 @@ def _moment(cell: str, reader: StampReader) -> tuple[float, bool] | None:
     except (ValueError, OverflowError):
         pass
     try:
-        stamp, _ = reader.read(cell[:80])
+        stamp, rest = reader.read(cell[:80])
     except ValueError:
         return None
-    return None if stamp is None else (stamp.seconds, stamp.dated)
+    if stamp is None or rest.strip() and _UNREAD.search(unaccented(_SAYS_NOTHING.sub(" ", rest.lower()))):
+        return None
+    return stamp.seconds, stamp.dated

@@ -198,6 +198,7 @@ def table_recording(table: Table) -> Recording:
         A value is not finite or out of range; time is unordered or repeated; every cell of a table is empty.
     """
     table = understood(table)
+    close: dict[str, int] = {}
 
     def series(what: str, *stems: str, optional: int = 0) -> Series | None:
         """Series of columns; the last ``optional`` ones may be absent (0 then)."""
@@ -212,7 +213,9 @@ def table_recording(table: Table) -> Recording:
                 for s in stems
             ]
         )
-        return tidy(table.time_s[whole], values[whole], table.where, what, dated=table.dated, tabled=True)
+        found = tidy(table.time_s[whole], values[whole], table.where, what, dated=table.dated, tabled=True)
+        close[what] = int(np.count_nonzero(whole)) - (0 if found is None else found.time_s.size)
+        return found
 
     quantities = {
         "position": _with_height(series("lat_deg+lon_deg", "lat", "lon"), table),
@@ -235,14 +238,20 @@ def table_recording(table: Table) -> Recording:
     known = {
         name: one for name, one in deviations.items() if one is not None and quantities[name] is not None
     }
-    return Recording(**quantities, sources=(_account(table),), deviations=known)
+    return Recording(**quantities, sources=(_account(table, close),), deviations=known)
 
 
-def _account(table: Table) -> SourceReport:
+def _account(table: Table, close: Mapping[str, int]) -> SourceReport:
+    """Account of a table, and of readings that stand too close to another one to be told from it."""
     used = [table.columns[stem].name.lower() for stem in table.values]
     empty = {table.columns[s].name: int(np.count_nonzero(gone)) for s, gone in table.missing.items()}
     counts = [Text("{name} {count}", name=name, count=count) for name, count in empty.items() if count]
     warnings = [Text("empty cells, missing samples: {told}", told=", ".join(counts))] if counts else []
+    warnings += [
+        Text("{what}: {count} readings within 1 ms of the one before left out", what=what, count=count)
+        for what, count in close.items()
+        if count
+    ]
     report = stream_report("rows", table.time_s.size, True, table.time_s)
     return SourceReport(
         table.where,
@@ -252,8 +261,17 @@ def _account(table: Table) -> SourceReport:
         warnings=(*table.warnings, *warnings),
         used=table.time_s.size,
         lines_left_out=table.left_out,
-        fields_left_out=tuple(
-            LeftOut(name, "", Text("empty or not available"), count) for name, count in empty.items() if count
+        fields_left_out=(
+            *(
+                LeftOut(name, "", Text("empty or not available"), count)
+                for name, count in empty.items()
+                if count
+            ),
+            *(
+                LeftOut(what, "", Text("another stands at the same time"), count)
+                for what, count in close.items()
+                if count
+            ),
         ),
         choices=table.choices,
     )

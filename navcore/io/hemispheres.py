@@ -8,11 +8,22 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.column_names import Column, plain_name
+from navcore.io.written_units import unaccented
 
-_SIDES = {
-    "lat": {"n": 1.0, "north": 1.0, "s": -1.0, "south": -1.0},
-    "lon": {"e": 1.0, "east": 1.0, "w": -1.0, "west": -1.0},
+_WORDS_OF_SIDES = {
+    ("lat", 1.0): "n north nord norte",
+    ("lat", -1.0): "s south sud sued sur sul",
+    ("lon", 1.0): "e east est este leste ost",
+    ("lon", -1.0): "w west ouest oeste ovest",
 }
+_SIDES = {
+    stem: {
+        word: sign for (of, sign), words in _WORDS_OF_SIDES.items() if of == stem for word in words.split()
+    }
+    for stem in ("lat", "lon")
+}
+_EITHER = "o"
+"""East in German (Ost), west in French, Spanish and Italian (Ouest, Oeste, Ovest)."""
 _STEMS = {"lat": "lat|latitude", "lon": "lon|long|lng|longitude"}
 _WORDS = "dir|direction|hem|hemi|hemisphere|side|sign|ref|ns|ew|n_s|e_w|indicator"
 _NAMED = {
@@ -21,7 +32,10 @@ _NAMED = {
 }
 
 
-_MAY_BE = {"lat": frozenset(("ns", "n_s", "ns_indicator")), "lon": frozenset(("ew", "e_w", "ew_indicator"))}
+_MAY_BE = {
+    "lat": frozenset(("ns", "n_s", "ns_indicator")),
+    "lon": frozenset(("ew", "e_w", "ew_indicator", "ow", "o_w", "eo", "e_o")),
+}
 """Names that the cells must confirm: ``ns`` is also a number of satellites."""
 
 
@@ -78,12 +92,17 @@ def signed(
     Raises
     ------
     InputError
-        A column is named a hemisphere and holds something else, or a value has the other sign.
+        A column is named a hemisphere and holds something else, or a value has the other sign; an O that may
+        be east or west.
     """
-    known = _SIDES[stem]
     for name, cells in sides:
-        lowered = [cell.strip().lower() for cell in cells]
+        lowered = [unaccented(cell.strip().lower()) for cell in cells]
+        known = _SIDES[stem] | _meaning_of_o(stem, name, lowered)
         strange = next((i for i, cell in enumerate(lowered) if cell and cell not in known), None)
+        if strange is not None and stem == "lon" and set(lowered) <= {*known, _EITHER, ""}:
+            at = Text("{where}, row {rows}", where=where, rows=rows[strange])
+            allowed = Text("may mean east (Ost) or west (Ouest, Oeste, Ovest): write E or W")
+            raise InputError(Fault(at, name, cells[strange], allowed))
         if strange is not None and is_named(name, stem):
             at = Text("{where}, row {rows}", where=where, rows=rows[strange])
             allowed = Text(
@@ -100,3 +119,14 @@ def signed(
             raise InputError(Fault(at, name, cells[against[0]], allowed))
         return np.abs(values) * sign, sign == 0.0, name
     return values, np.zeros(values.size, dtype=bool), ""
+
+
+def _meaning_of_o(stem: str, name: str, cells: Sequence[str]) -> dict[str, float]:
+    """Which side an O is, by the letter beside it in the name or the cells; empty if none does."""
+    if stem != "lon":
+        return {}
+    words = plain_name(name).split("_")
+    beside = {*words, *cells, *(letter for word in words if word in ("ow", "eo") for letter in word)}
+    if {"e", "w"} <= beside:
+        return {}
+    return {_EITHER: 1.0} if "w" in beside else {_EITHER: -1.0} if "e" in beside else {}

@@ -6,6 +6,7 @@ dated sentence and corrected. What gives no time has it from its neighbours (`na
 
 import math
 import re
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -30,6 +31,8 @@ _MOST_TRIES = 20_000
 _LOGGED_ADDRESS = "UNIXD"
 _DATE_PLACES = {"RMC,": (0, 8), "ZDA,": (0, 1)}
 """Where the fields stand: time and date (RMC), time and day (ZDA; month and year follow)."""
+_OF_DAY_PLACES = {"GGA,": (0, 5), "GNS,": (0, 5), "GLL,": (4, 5)}
+"""... and where the time of day stands, and the flag of the fix."""
 _LOGGED_DAY = re.compile(r"(?<!\d)(\d{4})_\d{3}_\d{5}(?!\d)")
 """Name of a file of the University of Hawaii's logger: year, day and second of the day."""
 
@@ -54,8 +57,8 @@ class Clock:
         self._logged: float | None = None
         dated = _first_dated(text)
         self._date = None if dated is None else dated[0] // _DAY * _DAY
-        if dated is not None:
-            ahead = _settled(text, dated)
+        ahead = _ahead_of_day(text) if dated is None else _settled(text, dated)
+        if ahead is not None:
             tally.local_time_s = _zone(ahead)
             wrong = ahead - tally.local_time_s
             tally.clock_error_s = wrong if _LEAST_ERROR_S < abs(wrong) <= _LARGEST_ERROR_S else 0.0
@@ -207,8 +210,27 @@ def _last_dated(text: str) -> tuple[float, int] | None:
     return None
 
 
-def _ahead(text: str, utc: float, position: int) -> float:
-    """By how much the stamp of a dated sentence's line is ahead of UTC, s; 0 without a stamp."""
+def _ahead_of_day(text: str) -> float | None:
+    """By how much the stamp of the first fix without a date is ahead of its time of day, s; None without."""
+    for key, (time_place, flag_place) in _OF_DAY_PLACES.items():
+        position = text.find(key)
+        for _ in range(_MOST_TRIES):
+            if position < 0:
+                break
+            fields = text[position + 4 : position + 4 + _LONGEST_SENTENCE].split("\n", 1)[0]
+            parts = fields.partition("*")[0].split(",")
+            with suppress(ValueError, IndexError):
+                if parts[flag_place][:1] not in ("", "0", "N", "V"):
+                    return _ahead(text, seconds_of(parts[time_place]), position, dated=False)
+            position = text.find(key, position + 4)
+    return None
+
+
+def _ahead(text: str, utc: float, position: int, dated: bool = True) -> float:
+    """By how much the stamp of a sentence's line is ahead of its UTC, s; 0 without a stamp.
+
+    Where one of them has no date, it is by less than half a day.
+    """
     begin = max(
         text.rfind("\n", max(0, position - 2 * LONGEST_STAMP), position) + 1, position - LONGEST_STAMP
     )
@@ -219,7 +241,7 @@ def _ahead(text: str, utc: float, position: int) -> float:
     if stamp is None:
         return 0.0
     ahead = stamp.seconds - (utc if stamp.dated else utc % _DAY)
-    if not stamp.dated:
+    if not (stamp.dated and dated):
         ahead -= _DAY * round(ahead / _DAY)
     return ahead
 

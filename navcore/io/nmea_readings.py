@@ -189,6 +189,16 @@ class Gathered:
             self._quantities[quantity] = [(row[~absent], values[~absent])]
             if not absent.any():
                 continue
+            if quantity == "water":
+                self._tally.notes += [
+                    Text(
+                        "{address} gives no speed through the water: its field is empty in all {count} "
+                        "sentences",
+                        address=names[kind],
+                        count=count,
+                    )
+                    for kind, count in Counter(kinds[absent].tolist()).items()
+                ]
             others = [
                 part for name, parts in self._quantities.items() if name != quantity for part, _ in parts
             ]

@@ -152,10 +152,10 @@ def _hdt(fields: Fields) -> Decoded:
 
 
 def _gll(fields: Fields) -> Decoded:
-    """Place, time and status; the oldest form has the place alone, which does not say that it is invalid."""
+    """Place, time and status; older forms have no status or the place alone: that does not say invalid."""
     oldest = fields.count == 4
     return {
-        "flags": np.where(oldest, 0, fields.codes(flag_of("GLL", 5), flag_of("GLL", 6))),
+        "flags": np.where(fields.count < 6, 0, fields.codes(flag_of("GLL", 5), flag_of("GLL", 6))),
         "time_of_day": np.where(oldest, math.nan, fields.of(value.time_of_day, 4)),
         "position": _place(fields, 0),
     }

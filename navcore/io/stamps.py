@@ -6,7 +6,8 @@ Read are, anywhere in the text beside the sentence (UTC where no zone is given):
   ``20190326100631``;
 - year and day of the year (Lamont, ``LDS``): ``19+085:10:06:31.512``, ``2019:085:10:06:31.512``;
 - ``03/26/2019,10:06:31.512`` (SCS; the month comes first, unless a file proves the contrary),
-  ``26.03.2019 10:06:31``, ``26-03-2019 10:06:31``, ``26-Mar-2019 10:06:31``;
+  ``26.03.2019 10:06:31``, ``26-03-2019 10:06:31``, ``26-Mar-2019 10:06:31``, ``26. März 2019 10:06:31``,
+  ``Tue Mar 26 10:06:31 UTC 2019``, with months in English and six further languages;
 - Unix time in s, ms, us or ns, also in an NMEA 4 tag block (``c:1553594791``);
 - a time of day alone, ``10:06:31.512``: the day then comes from the sentences.
 
@@ -19,7 +20,7 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from typing import NamedTuple
 
-from navcore.foundation.text import Text
+from navcore.io.written_units import unaccented
 
 LONGEST_STAMP = 160
 """Characters next to the sentence in which a stamp is looked for."""
@@ -28,8 +29,20 @@ _TIME = (
     r"(?P<half> ?[AaPp][Mm]\b)?(?P<zone> ?(?:Z|UTC|GMT)| ?[+-]\d\d:?\d\d(?!\d))?"
 )
 _GAP = r"[T ,;_\t:]{1,3}"
-_MONTHS = Text("jan feb mar apr may jun jul aug sep oct nov dec").split()
-_MONTH = r"(?P<name>[A-Za-z]{3})[a-z]{0,6}"
+_MONTHS = {
+    name: number
+    for number, names in enumerate(
+        (
+            "jan ene gen", "feb fev", "mar mrz mrt", "apr avr abr", "may mai mag mei maj", "jun juin giu",
+            "jul juil lug", "aug aou ago", "sep set", "oct okt ott out", "nov", "dec dez dic des",
+        ),
+        start=1,
+    )
+    for name in names.split()
+}  # fmt: skip
+"""Months by the letters with which they begin, without accents: of English, German, French, Spanish, Italian,
+Portuguese, Dutch and the Nordic languages."""
+_MONTH = r"(?P<name>[^\W\d_]{3,10})"
 _EARLIEST, _LATEST = 631152000.0, 4102444800.0
 """1990 and 2100: a number outside is no Unix time."""
 _FARTHEST_ZONE_S = 15 * 3600.0
@@ -72,10 +85,11 @@ def _either_order(match: re.Match[str], day_first: bool) -> Stamp:
 
 
 def _named(match: re.Match[str], day_first: bool) -> Stamp:
-    name = match["name"].lower()
-    if name not in _MONTHS:
+    name = unaccented(match["name"].lower())
+    month = _MONTHS.get(name[:4]) or _MONTHS.get(name[:3])
+    if month is None:
         raise ValueError(f"{name} is no month")
-    return Stamp(midnight(int(match["y"]), _MONTHS.index(name) + 1, int(match["d"])) + _clock_s(match))
+    return Stamp(midnight(int(match["y"]), month, int(match["d"])) + _clock_s(match))
 
 
 def _unix(match: re.Match[str], day_first: bool) -> Stamp:
@@ -100,8 +114,12 @@ _FORMS: tuple[tuple[re.Pattern[str], Reader], ...] = (
         ),
         _either_order,
     ),
-    (re.compile(rf"(?<!\d)(?P<d>\d\d?)[- ]{_MONTH}[- ](?P<y>\d{{4}}|\d\d){_GAP}{_TIME}"), _named),
+    (
+        re.compile(rf"(?<!\d)(?P<d>\d\d?)(?:\. ?|[- ]){_MONTH}(?:\.? |\.?-)(?P<y>\d{{4}}|\d\d){_GAP}{_TIME}"),
+        _named,
+    ),
     (re.compile(rf"{_MONTH} (?P<d>\d\d?),? (?P<y>\d{{4}}){_GAP}{_TIME}"), _named),
+    (re.compile(rf"{_MONTH} {{1,2}}(?P<d>\d\d?) {_TIME} (?P<y>\d{{4}})(?!\d)"), _named),
     (re.compile(rf"(?<!\d)(?P<y>\d{{4}})(?P<mo>\d\d)(?P<d>\d\d){_GAP}{_TIME}"), _calendar),
     (
         re.compile(

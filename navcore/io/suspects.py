@@ -81,26 +81,50 @@ def suspect_warnings(recording: Recording) -> list[str]:
 
 
 def _places_apart(series: Series) -> list[str]:
-    """Say which runs of positions lie where no ship gets to and back from between the others."""
+    """Say which runs of positions lie where no ship gets to from the others, be they at the ends."""
     far = np.flatnonzero(_far_steps(series.values, series.time_s))
-    runs = zip((far[:-1] + 1).tolist(), far[1:].tolist(), strict=True)
+    if far.size == 0:
+        return []
+    bounds = np.concatenate([[0], far + 1, [series.time_s.size]])
+    runs = list(zip(bounds[:-1].tolist(), (bounds[1:] - 1).tolist(), strict=True))
+    longest = int(np.argmax(np.diff(bounds)))
+    apart = [*_beyond(series, runs[longest::-1], -1)[::-1], *_beyond(series, runs[longest:], 1)]
+    return [_told_apart(series, *run) for run in apart[:_MOST_RUNS]]
+
+
+def _beyond(series: Series, runs: list[tuple[int, int]], way: int) -> list[tuple[int, int]]:
+    """Runs of positions on one way from the first of them that a ship does not get to from those before."""
+    ends = runs[0]
     found: list[tuple[int, int]] = []
-    for first, last in runs:
-        if found and first <= found[-1][1] + 1 or 2 * (last - first + 1) > series.time_s.size:
-            continue
-        ends = np.array([first - 1, last + 1])
-        if not _far_steps(series.values[ends], series.time_s[ends]).any():
-            found.append((first, last))
-    return [
-        Text(
+    for run in runs[1:]:
+        pair = np.array([ends[1], run[0]] if way > 0 else [run[1], ends[0]])
+        if not _far_steps(series.values[pair], series.time_s[pair]).any():
+            ends = run
+        elif found and abs(run[0 if way > 0 else 1] - found[-1][1 if way > 0 else 0]) == 1:
+            found[-1] = (found[-1][0], run[1]) if way > 0 else (run[0], found[-1][1])
+        else:
+            found.append(run)
+    return found
+
+
+def _told_apart(series: Series, first: int, last: int) -> str:
+    off = _ways(series.values[[first - 1, first] if first else [last, last + 1]])[0] / 1000.0
+    count, when = last - first + 1, _when(series, first, last)
+    if first and last + 1 < series.time_s.size:
+        return Text(
             "positions: {count} from {when} lie {off:.3g} km from those before and after, farther than a "
             "ship gets: leave the rows out",
-            count=last - first + 1,
-            when=_when(series, first, last),
-            off=_ways(series.values[[first - 1, first]])[0] / 1000.0,
+            count=count,
+            when=when,
+            off=off,
         )
-        for first, last in found[:_MOST_RUNS]
-    ]
+    return Text(
+        "positions: {count} from {when}, at an end of the recording, lie {off:.3g} km from those beside "
+        "them, farther than a ship gets: leave the rows out",
+        count=count,
+        when=when,
+        off=off,
+    )
 
 
 def _ways(places: np.ndarray) -> np.ndarray:

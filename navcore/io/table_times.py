@@ -9,7 +9,7 @@ from navcore.foundation.errors import Fault
 from navcore.foundation.text import Text
 from navcore.io.column_names import Column
 from navcore.io.series import LeftOut
-from navcore.io.times.coarse_stamps import spread
+from navcore.io.times.coarse_stamps import spread, spread_bursts
 from navcore.io.times.counts import FASTEST_HZ
 from navcore.io.times.doubts import trust_of
 from navcore.io.times.repeats import first_of_equals, ids_of
@@ -96,12 +96,19 @@ def of_one_clock(table: Table) -> Table:
         )
         table = replace(table, time_s=time_s, warnings=(*table.warnings, *([told] if count else [])))
     time_s, rows = spread(table.time_s)
-    if rows == 1:
-        return table
     told = Text(
         "{rows} rows bear the same time, too coarse for them: spread over its interval, as they stand",
         rows=rows,
     )
+    if rows == 1 and not any(gone.any() for gone in table.missing.values()):
+        time_s, rows = spread_bursts(table.time_s)
+        told = Text(
+            "the rows come in bursts of {rows}, as a host stamps them on arrival: spread over the time "
+            "between two bursts, the last of each at its stamp",
+            rows=rows,
+        )
+    if rows == 1:
+        return table
     return replace(table, time_s=time_s, warnings=(*table.warnings, told))
 
 

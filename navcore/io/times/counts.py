@@ -22,6 +22,8 @@ _SLOWEST_S = 4.0 * 3600.0
 """Between the rows of a log; more are counted in another unit."""
 _DATED_FROM = 1e8
 """Numbers from here on have an epoch, in whichever unit."""
+_UNIX_FROM = 1e9
+"""Unix time, s, of 2001: smaller numbers are seconds since 2000 or 2001 as likely, which are of our days."""
 _TICK_S = 1e-7
 EPOCHS = {
     "unix": 0.0,
@@ -184,9 +186,14 @@ def read_counts(values: np.ndarray, unit: str = "") -> Times:
             raise Ambiguous(_either(known, days, own=True))
         found = _only(values, known, days) or Times(values, False)
         return found._replace(told=found.told + _of_1904(known)) if days == [_DAYS[0]] else found
+    others = [count for count in _FURTHER if _fits(count, known)]
+    if unix and size < _UNIX_FROM:
+        unix += [count for count in others if count.zero_s > EPOCHS["gps"]]
     found = _only(values, known, unix, tell=False)
     if found is None:
-        found = _only(values, known, [count for count in _FURTHER if _fits(count, known)])
+        found = _only(values, known, others)
+    elif gps := next((count for count in others if count.zero_s == EPOCHS["gps"]), None):
+        found = found._replace(told=_unless(known, gps))
     return found or Times(unix_by_size(values), True)
 
 
@@ -247,6 +254,12 @@ def _either(known: np.ndarray, counts: list[Count], own: bool) -> str:
     if own:
         meant.append(Text("seconds (each {step:.3g} s)", step=span))
     return Text.joined(Text(" or "), meant)
+
+
+def _unless(known: np.ndarray, other: Count) -> str:
+    """Say of Unix time which date another count would give."""
+    moment = moment_text(other.times(known[:1])[0])
+    return Text("seconds since 1970 (as {words} it would be {moment})", words=other.words(), moment=moment)
 
 
 def unix_by_size(values: np.ndarray) -> np.ndarray:
