@@ -12,7 +12,7 @@ import numpy as np
 
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.switching.base import SwitchingParameters
-from navcore.networks.base import NetworkParameters
+from navcore.networks.base import MAX_ORDER, NetworkParameters
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.unity2 import Unity2Network
 from tests.law_twin_forms import Form, bilinear, companion, controller, damping_ratio
@@ -163,7 +163,7 @@ class TwinLaw(TwinPolicies):
         for pair in ("correction", "offset", "output"):  # nothing acts in the third channel, the azimuth
             numbers[pair] = np.append(getattr(self, pair), 0.0)
         if self.tunes:
-            numbers["x"] = np.pad(self.states, ((0, 1), (0, 4 - self.states.shape[1])))
+            numbers["x"] = np.pad(self.states, ((0, 1), (0, MAX_ORDER - self.states.shape[1])))
         if self.policy.id == "variation":
             numbers["policies.variation.count"] = self.count
         if self.switching.id == "bridge":

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from navcore.exporting.extents import cropped
 from navcore.exporting.ir import (
     Call,
     Const,
@@ -78,7 +79,7 @@ def read_program(step: Any, state: Mapping[str, Any], arguments: Sequence[Value]
         }
         unchanged = frozenset(reader.program.state).difference(stored) | fixed
         if unchanged == fixed:
-            return tidied(reader.program)
+            return cropped(tidied(reader.program))
         fixed = unchanged
 
 
@@ -101,6 +102,8 @@ def tidied(program: Program) -> Program:
             break
     called = _called(program)
     program.functions = [one for one in program.functions if one.name in called]
+    for function in program.functions:
+        _without_unread_result(function)
     found = [one for function in program.functions for one in _read(function)]
     found += [
         one.place
@@ -158,6 +161,14 @@ def _without_known_results(program: Program, function: Function) -> None:
         calls = _calls(program, function)
         for _, call in calls:
             call.targets = call.targets[:i] + call.targets[i + 1 :]
+
+
+def _without_unread_result(function: Function) -> None:
+    """Give no name to the one result of a call that nobody reads: C would warn of the variable."""
+    read = {one.name for one in _read(function) if isinstance(one, Var)}
+    for one in statements(function.body):
+        if isinstance(one, Call) and len(one.targets) == 1 and one.targets[0].name not in read:
+            one.targets = ()
 
 
 def _replaced(statement: Statement, known: dict[str, Num]) -> Statement:

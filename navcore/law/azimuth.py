@@ -8,7 +8,7 @@ u = -omega_U (theory.md 3.7). L_r - L_c is the integral of the held difference, 
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined
-from navcore.law.network_state import channel_of, feed, keep_channel
+from navcore.law.network_state import advance_channel
 from navcore.law.records import CLEAR, REST, E, N, U
 from navcore.law.step import Correction
 
@@ -90,8 +90,7 @@ def steer(law, c, up):
     if not s.damped:
         s.correction[U] = 0.0
         return c, 0.0
-    c_u, states = feed(p.azimuth_order, s.azimuth, channel_of(s, U), u)
-    keep_channel(s, U, states)
+    c_u = advance_channel(p.azimuth_order, s.azimuth, s, U, u)
     if external:
         s.latitude += s.difference[N] * up.inv_m * p.law_step
     s.correction[U] = c_u

@@ -3,7 +3,7 @@
 import math
 
 from navcore.foundation.compiled import inlined, kernel
-from navcore.law.records import CHANNELS, MAX_STATES, E, N
+from navcore.law.records import E, N, U
 
 USE_NOTHING, USE_HEADING, USE_ACCELERATION = 0, 1, 2
 """Quantities that a policy wants remembered besides the differences."""
@@ -85,9 +85,10 @@ def remember(law, u_e, u_n, sensed):
     row = ring[head]
     row.difference[E], row.difference[N] = s.difference[E], s.difference[N]
     row.input[E], row.input[N] = u_e, u_n
-    for channel in range(CHANNELS):
-        for i in range(MAX_STATES):
-            row.x[channel, i] = s.x[channel, i]
+    for i in range(p.order):
+        row.x[E, i], row.x[N, i] = s.x[E, i], s.x[N, i]
+    for i in range(p.azimuth_order):
+        row.x[U, i] = s.x[U, i]
     row.auxiliary = 0.0
     if p.remembers == USE_HEADING:
         row.auxiliary = s.total_heading

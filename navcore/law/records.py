@@ -10,9 +10,15 @@ import numpy as np
 
 from navcore.foundation.records import COUNT, FLAG, REAL, record_type
 from navcore.law.added_call import USER_PARAMETERS, USER_STATE
+from navcore.networks.base import MAX_ORDER
 
-MAX_STATES = 4
-"""States of a network in one channel (navcore.networks.base.MAX_ORDER)."""
+MAX_STATES = MAX_ORDER
+"""Room for the states of a network in one channel.
+
+One size serves all networks. A record sized by the network in use would be a type of its own for each size,
+and each kernel would be compiled once for each: two minutes more. What the room costs is memory that a
+smaller network never touches.
+"""
 E, N, U = 0, 1, 2
 """Channels, the first index of what each of them has: two level ones, and the azimuth."""
 CHANNELS = 3
@@ -75,6 +81,7 @@ DISCRETE_NETWORK = record_type(
     E=(REAL, (MAX_STATES,)),  # output row of the velocity feedback, 1/s
     F=REAL,
     steady=(REAL, (MAX_STATES,)),  # state for a constant unit input
+    change=(REAL, (MAX_STATES,)),  # of the states in a call, while it is computed (navcore.law.network_state)
 )
 """Discrete state space of Q = 1 - H of one channel; what lies beyond the order is zero.
 

@@ -20,7 +20,7 @@ from navcore.law.added_call import (
 )
 from navcore.law.dispatch import Choice, dispatch
 from navcore.law.history import remember
-from navcore.law.network_state import advance_network, channel_of, clear_network, fed_back, rest
+from navcore.law.network_state import advance_network, clear_network, rest, second_output
 from navcore.law.policy import POLICIES
 from navcore.law.records import (
     AS_DECIDED,
@@ -125,8 +125,8 @@ def _make_step(decide: Any, switch: Any, full: bool) -> Any:
         s.engaged = True
         a_e = a_n = 0.0
         if p.feeds_back:
-            a_e = fed_back(s.network, channel_of(s, E), u_e)
-            a_n = fed_back(s.network, channel_of(s, N), u_n)
+            a_e = second_output(p.order, s.network, s, E, u_e)
+            a_n = second_output(p.order, s.network, s, N, u_n)
         c_e, c_n = advance_network(law, u_e, u_n)
         if p.realisation == AS_PRINTED:
             c_e, c_n = as_printed(c_e, c_n, sensed, u_e, u_n)

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-MAX_ORDER = 4
-"""Highest order of a network: the compiled control law keeps this many states a channel."""
+MAX_ORDER = 8
+"""Highest order of a network: the compiled control law has room for this many states a channel."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,7 +43,7 @@ _Coefficients = Annotated[tuple[_Coefficient, ...], BeforeValidator(_as_tuple)]
 
 
 class CustomNetwork(NetworkParameters):
-    """Any proper network of up to four poles; with nothing given, the zeros and poles of `classic2`.
+    """Any proper network of up to eight poles; with nothing given, the zeros and poles of `classic2`.
 
     A complex zero or pole is a pair [re, im] and comes with its conjugate; a real one is a number.
     """

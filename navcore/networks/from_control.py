@@ -14,7 +14,7 @@ def from_control(system: Any) -> CustomNetwork:
     Parameters
     ----------
     system
-        H(s), s in rad/s: continuous, one input and one output, at most four poles.
+        H(s), s in rad/s: continuous, one input and one output, at most eight poles.
 
     Returns
     -------

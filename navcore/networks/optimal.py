@@ -12,7 +12,7 @@ from pydantic import PrivateAttr
 from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
-from navcore.networks.base import MAX_ORDER, LinearNetwork, NetworkParameters, linear_network, refuse
+from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.lqg import Compensator, ControlProblem, SensorFigures, compensator, plant
 from navcore.networks.seen_at import seen_at
 from navcore.networks.state_space import state_spaces
@@ -35,6 +35,8 @@ FRAGILE = 0.5
 
 _ACCURACY = 1e-8
 """To which the running form must have the response of the network."""
+_STATES = 4
+"""States of the network that the law is reduced to (theory.md 17)."""
 _UNSTABLE = Text("makes an unstable network with these figures: must be larger")
 _FIELDS = {
     "gyro_arw_dpsh": ("gyro_white", DEG_PER_SQRT_HOUR),
@@ -294,7 +296,7 @@ def _law(figures: SensorFigures, rho: float, q: float, feedback: bool, omega_s: 
         raise FloatingPointError("the law is not finite")
     if np.max(np.real(np.linalg.eigvals(law.A))) >= 0.0:  # which has no balanced truncation
         raise refuse("rho", rho, _UNSTABLE)
-    return law.reduced(MAX_ORDER)
+    return law.reduced(_STATES)
 
 
 def _second_output(law: Compensator) -> np.ndarray:

@@ -77,7 +77,7 @@ def test_a_system_of_python_control_becomes_the_network_and_comes_back() -> None
         (control.tf([1.0], [1.0, 1.0], 0.1), "a continuous system"),
         (control.ss([[-1.0]], [[1.0, 1.0]], [[1.0]], [[0.0, 0.0]]), "one input and one output"),
         ("1/s", "must be a TransferFunction"),
-        (control.tf([1.0], [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]), "system"),
+        (control.tf([1.0], [1.0] * 10), "system"),
     ],
 )
 def test_a_system_that_makes_no_network_is_refused(system: object, said: str) -> None:

@@ -16,6 +16,7 @@ from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
 from schuler_bench.views.requirements.moving import Moving, moving_of
+from tests.eight import product
 from tests.exported import compiler
 from tools import wasm
 
@@ -55,6 +56,7 @@ SHIP: dict[str, Any] = {
             "policy": {"id": "threshold", "limit_mps": 0.3},
         },
         {"name": "own", "damping": "internal", "network": {"id": "unity2"}},
+        {"name": "eight states", "damping": "external", "network": product()},
         {"name": "bridged", "damping": "external", "switching": {"id": "bridge"}},
     ],
 }

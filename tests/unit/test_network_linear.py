@@ -81,7 +81,7 @@ def test_networks_are_equal_only_with_the_same_poles_bit_for_bit() -> None:
     ("num", "den", "part"),
     [
         ([1.0, 0.0], [1.0], "proper"),
-        ([1.0], [1.0] * 6, "at most 4"),
+        ([1.0], [1.0] * 10, "at most 8"),
         ([0.0], [1.0], "not zero"),
         ([1.0], [0.0], "not zero"),
     ],

@@ -1,5 +1,7 @@
 """The strapdown kernel against its slow twin; its loop for the law at every sample."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,7 @@ from navcore.networks.optimal import OptimalNetwork
 from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
+from tests.eight import product
 from tests.law_twin import TwinLaw
 from tests.strapdown import DENG_SWING, DRIVE, SITE, law, navigate, reference
 from tests.strapdown_twin import run_twin
@@ -187,12 +190,13 @@ def test_lengths_that_do_not_fit_are_refused():
 
 
 SECONDS = 12
-NETWORKS = {
+NETWORKS: dict[str, Any] = {
     "one state": 'id = "compass", sigma = 0.05',
     "as printed": 'id = "compass", sigma = 0.05, realisation = "as_printed"',
     "two states": 'id = "classic2"',
     "three states": 'id = "classic3"',
     "four states": 'id = "complementary"',
+    "eight states": product(),
     "two outputs": 'id = "optimal", realisation = "feedback", q = 1.0',
 }
 

@@ -20,7 +20,7 @@ from navcore.foundation.text import Text
 from navcore.law.history import row_of_age
 from navcore.law.network_state import advance_network
 from navcore.law.policy.base import PolicyParameters, calls
-from navcore.law.records import MAX_STATES, E, N
+from navcore.law.records import E, N
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
 
@@ -126,7 +126,7 @@ def _go_back(own, memory, law):
     for channel in range(2):
         for i in range(3):
             memory.z[channel, i] = kept.z[channel, i]
-        for i in range(MAX_STATES):
+        for i in range(law.p.order):
             s.x[channel, i] = row.x[channel, i]
     for i in range(3):
         for j in range(3):

@@ -32,7 +32,7 @@ def _put_aside(own, memory, law):
     if law.s.ring_fill < own.age + own.window or not row.damped:
         return
     for channel in range(2):
-        for i in range(MAX_STATES):
+        for i in range(law.p.order):
             memory.x[channel, i] = row.x[channel, i]
     memory.mean[E] = mean_of(law, input_e, own.age, own.window)
     memory.mean[N] = mean_of(law, input_n, own.age, own.window)

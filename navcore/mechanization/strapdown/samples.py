@@ -10,7 +10,7 @@ ends: a log sample missing, a pole.
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel
-from navcore.law.network_state import Channel, channel_of, fed_back, feed, keep_channel
+from navcore.law.network_state import CARRIED, Channel, channel_of, fed_back, feed, keep_channel
 from navcore.law.records import AS_PRINTED, EXTERNAL, E, N, Sensed, U
 from navcore.law.step import as_printed
 from navcore.mechanization.strapdown.attitude import heading_of
@@ -101,8 +101,9 @@ class _Fixed(NamedTuple):
 
 @inlined
 def is_steady(law):
-    """Whether the law now does nothing but feed its network of the level channels."""
-    return law.p.steady and law.p.azimuth_order == 0 and law.s.started and law.s.damped
+    """Whether the law now does nothing but feed its network of the level channels, in local variables."""
+    short = law.p.order <= CARRIED and law.p.azimuth_order == 0
+    return law.p.steady and short and law.s.started and law.s.damped
 
 
 @inlined
