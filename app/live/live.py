@@ -157,7 +157,7 @@ class Live:
         self._kept_bytes = 0
         self._rates: deque[tuple[float, int]] = deque()
         self._points: deque[tuple[float, ...]] = deque(maxlen=_MOST_POINTS)
-        self._sent = self._left_out = self._unsent = 0
+        self._sent = self._unsent = 0
         self._last: Piece | None = None
         self._newest_s = math.nan
         self.status = Status(tuple(map(str, self._sources)), names=names)
@@ -250,7 +250,6 @@ class Live:
             heard.forget_before(math.inf)
             return
         while (piece := self._damping.advance(reading.recording)) is not None:
-            self._left_out += self._damping.left_out
             self._point(piece)
             self._send(reading, piece)
             self._last = piece
@@ -318,7 +317,7 @@ class Live:
             counts.sentences,
             counts.malformed,
             self._inlet.dropped + self._unsent,
-            self._left_out,
+            self._damping.left_out,
             self._heard.described,
             self._newest_s,
             math.nan if piece is None else float(piece.time_s[-1]),

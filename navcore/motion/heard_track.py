@@ -24,13 +24,13 @@ class HeardTrack(InsTrack):
 
     Attributes
     ----------
-    left_out : int
-        Fixes that were left out.
+    left_out_s : ndarray, shape (n,)
+        UTC of the fixes that were left out, s.
     """
 
     carries_recorded_imu: ClassVar[bool] = False
     _heard: Recording = PrivateAttr()
-    _left_out: int = PrivateAttr(0)
+    _left_out: np.ndarray = PrivateAttr()
 
     @classmethod
     def of(cls, heard: Recording) -> "HeardTrack":
@@ -41,8 +41,8 @@ class HeardTrack(InsTrack):
         return track
 
     @property
-    def left_out(self) -> int:
-        """Fixes that were left out."""
+    def left_out_s(self) -> np.ndarray:
+        """UTC of the fixes that were left out, s."""
         return self._left_out
 
     def recording(self) -> Recording:
@@ -75,14 +75,14 @@ class HeardTrack(InsTrack):
         return Truth(half_s, sample(along, count, half_s, earth))
 
 
-def _without_outliers(position: Series) -> tuple[Series, int]:
+def _without_outliers(position: Series) -> tuple[Series, np.ndarray]:
     if position.time_s.size < 3:
-        return position, 0
+        return position, np.empty(0)
     places, _ = outliers(position, in_metres(position)[2])
     if not places.size:
-        return position, 0
+        return position, np.empty(0)
     kept = np.ones(position.time_s.size, bool)
     kept[places] = False
     parts = (array[kept].copy() for array in (position.time_s, position.values, position.valid))
     time_s, values, valid = parts
-    return replace(position, time_s=time_s, values=values, valid=valid), int(places.size)
+    return replace(position, time_s=time_s, values=values, valid=valid), position.time_s[places]

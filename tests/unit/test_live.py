@@ -1,5 +1,6 @@
 """A ship's INS as it comes: damping carried on in pieces is that of the run on the whole recording."""
 
+import math
 import random
 from collections.abc import Iterable
 from pathlib import Path
@@ -35,7 +36,11 @@ def live_scenario(
 
 
 def fed(
-    live: LiveDamping, parts: Iterable[str], heard: Heard | None = None, sent: Sent | None = None
+    live: LiveDamping,
+    parts: Iterable[str],
+    heard: Heard | None = None,
+    sent: Sent | None = None,
+    trim_s: float = math.inf,
 ) -> tuple[list[Piece], list[str], list[str]]:
     """Give texts one after the other; pieces, sentences sent on, and what was told."""
     heard = heard or Heard()
@@ -53,7 +58,7 @@ def fed(
                 lines += sent.lines(reading, piece, heard.pinned)
         if live.told and (not told or told[-1] != live.told):
             told.append(live.told)
-        heard.forget_before(live.needed_from_s)
+        heard.forget_before(max(live.needed_from_s, reading.newest_s - trim_s))
     return pieces, lines, told
 
 
@@ -124,7 +129,7 @@ def test_what_is_wrong_on_the_line_is_counted_and_passed_over() -> None:
     live = LiveDamping(live_scenario())
     pieces, _, told = fed(live, in_parts(each, 20), heard)
     assert heard.counts.malformed == 4 and heard.counts.sentences == 4 * 400 - 1, heard.counts
-    assert not told and not live.restarts
+    assert not told and not live.restarts and live.left_out == 1
     assert sum(len(piece.time_s) for piece in pieces) >= 375
     moved = np.concatenate([piece.moved["unity2"] for piece in pieces])
     assert np.abs(moved[:, 3:5]).max() < 1.0
@@ -157,6 +162,30 @@ def test_a_fix_given_to_the_ins_begins_damping_anew() -> None:
     assert np.abs(again.moved["unity2"][0, :7]).max() == 0.0
 
 
+def test_a_heading_that_falls_silent_is_waited_for() -> None:
+    each = seconds(600)
+    for k in range(200, 450):
+        each[k] = [line for line in each[k] if "HDT" not in line]
+    live = LiveDamping(live_scenario())
+    pieces, _, told = fed(live, in_parts(each, 20), trim_s=180.0)
+    time_s = np.concatenate([piece.time_s for piece in pieces])
+    assert told == [
+        "the INS's heading is silent: damping begins anew",
+        "waiting for the heading of the INS: HDT or THS sentences",
+    ]
+    assert live.restarts == 1 and time_s[-1] - time_s[0] > 580.0
+    assert np.count_nonzero(np.diff(time_s) > 1.5) == 1 and np.diff(time_s).max() > 200.0
+
+
+def test_what_is_no_longer_at_hand_begins_damping_anew() -> None:
+    each = seconds(300)
+    live, heard = LiveDamping(live_scenario()), Heard()
+    fed(live, in_parts(each[:150], 20), heard)
+    heard.begin_anew()
+    _, _, told = fed(live, in_parts(each[200:], 20), heard)
+    assert told == ["what was heard meanwhile is no longer at hand: damping begins anew"]
+
+
 def test_a_stream_that_begins_again_is_taken_up() -> None:
     each = seconds(300)
     live, heard = LiveDamping(live_scenario()), Heard()
@@ -179,7 +208,7 @@ def _gll(line: str) -> str:
 
 def test_what_is_missing_is_named_and_bounds_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("navcore.engine.live.heard.MOST_CHARACTERS", 9000)
-    each = [second[:1] for second in seconds(300)]
+    each = [second[:3] for second in seconds(300)]
     heard, live = Heard(), LiveDamping(live_scenario())
     _, _, told = fed(live, in_parts(each, 20), heard)
     assert told == ["waiting for the log: VBW or VHW sentences"]

@@ -159,6 +159,7 @@ def test_a_file_that_grows_is_followed(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_listens_damps_and_sends_on(out: socket.socket, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("schuler_bench.live.live.TICK_S", 0.05)
+    monkeypatch.setattr("navcore.foundation.kernel_cache.ready", lambda: True)
     port = free_port()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as box:
         box.bind(("127.0.0.1", 0))
@@ -195,6 +196,7 @@ def _send(out: socket.socket, port: int, each: list[list[str]]) -> None:
 
 def test_an_error_of_ours_does_not_end_it(out: socket.socket, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("schuler_bench.live.live.TICK_S", 0.05)
+    monkeypatch.setattr("navcore.foundation.kernel_cache.ready", lambda: True)
     port, calls = free_port(), list[int]()
 
     def fails(self: Live, text: str) -> None:

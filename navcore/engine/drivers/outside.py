@@ -65,7 +65,10 @@ def settled(scenario: Scenario) -> Scenario:
                 raise InputError(Fault("", "reference.file", log.file, _no_heading(series.source)))
             changed["reference"] = log.model_copy(update={"frame": "body"})
     if scenario.site == SiteSettings():
-        start = motion.truth(1, 1.0, scenario.site.site(), scenario.earth, start_utc(scenario)).values[0]
+        try:
+            start = motion.truth(1, 1.0, scenario.site.site(), scenario.earth, start_utc(scenario)).values[0]
+        except InputError as error:
+            raise error.located("", f"{motion.block}.") from None
         lat_deg, lon_deg = (round(float(start[place]) / DEG, 6) for place in (LAT, LON))
         lat_deg = min(max(lat_deg, -89.0), 89.0)
         place = {"lat_deg": lat_deg, "lon_deg": (lon_deg + 180.0) % 360.0 - 180.0}

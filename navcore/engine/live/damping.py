@@ -108,7 +108,7 @@ class LiveDamping:
     told : str
         Why it waits, or was begun anew; empty where nothing is to be said.
     left_out : int
-        Fixes far off their neighbours that were left out of the last piece.
+        Fixes far off their neighbours that were left out.
 
     Raises
     ------
@@ -160,10 +160,9 @@ class LiveDamping:
         """
         heard = _since(heard, self._after_s)
         self.told = self._missing(heard)
-        if self.told and (self._start_s is None or heard.position is None):
+        if self.told and (self._start_s is None or heard.position is None or heard.heading is None):
             return None
         track = HeardTrack.of(heard)
-        self.left_out = track.left_out
         streams = track.streams()
         if streams.position.time_s.size < FEWEST_FIXES:
             return None
@@ -185,6 +184,8 @@ class LiveDamping:
         """Say what is not heard that damping needs; empty where all of it is."""
         if heard.position is None:
             return Text("waiting for positions of the INS: RMC, GGA or GLL sentences")
+        if heard.heading is None:
+            return Text("waiting for the heading of the INS: HDT or THS sentences")
         if _has_log(heard):
             return ""
         if self._start_s is not None:
@@ -231,6 +232,14 @@ class LiveDamping:
         silent = np.flatnonzero((np.diff(time_s) > LONGEST_INTERVAL_S) & (time_s[1:] > begin))
         jumps = [jump for jump in jumps_of(position, track.recording().velocity) if jump.time_s > begin]
         ends = [float(time_s[k + 1]) for k in silent] + [jump.time_s for jump in jumps]
+        last_s = float(track.streams().heading.time_s[-1])
+        if time_s[-1] - last_s > LONGEST_INTERVAL_S:
+            self.begin_anew(Text("the INS's heading is silent"))
+            self._after_s = last_s + 1e-3
+            return True
+        if time_s[0] > begin - self._given.run.step_s and self._done:
+            self.begin_anew(Text("what was heard meanwhile is no longer at hand"))
+            return True
         if not ends or min(ends) > until + LEAST_DELAY_S:
             return False
         if silent.size:
@@ -281,6 +290,8 @@ class LiveDamping:
                 output[:, 4] = np.nan
             damped[name] = output
         self._take(log, begin, (steps - 1) * step_s)
+        off = track.left_out_s
+        self.left_out += int(np.count_nonzero((off >= begin) & (off < begin + steps * step_s)))
         self._done += steps
         return Piece(begin + states * step_s, recorded, damped, moved, _held_log(log, states * step_s))
 
