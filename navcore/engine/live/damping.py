@@ -359,7 +359,7 @@ def _since(heard: Recording, time_s: float) -> Recording:
             arrays = (array[first:].copy() for array in (one.time_s, one.values, one.valid))
             times, values, valid = arrays
             parts[name] = replace(one, time_s=times, values=values, valid=valid)
-    return Recording(**parts, sources=heard.sources)
+    return Recording(**parts, sources=heard.sources, deviations={})
 
 
 def _has_log(heard: Recording) -> bool:

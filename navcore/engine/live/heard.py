@@ -127,7 +127,7 @@ class Heard:
             and (one := series_of(NAME, tally.dated, name, picked)) is not None
         }
         shifted: dict[str, Series] = {name: one.shifted(shift_s) for name, one in series.items()}
-        recording = Recording(**shifted, sources=())
+        recording = Recording(**shifted, sources=(), deviations={})
         reading = Reading(recording, whole, ordered, shift_s)
         if math.isfinite(reading.newest_s):
             self._newest_s = max(self._newest_s, reading.newest_s)
