@@ -18,6 +18,7 @@ from navcore.foundation.notation import symbol, unit_sign
 from navcore.foundation.offered import when_changed
 from navcore.foundation.parameters import allowed_range, bounds_of, element_of, extra_of
 from navcore.foundation.text import Text
+from schuler_bench.editing.rounding import round_away, round_step, significant
 
 Path = tuple[str | int, ...]
 NONE = "none"
@@ -89,9 +90,9 @@ class Slider:
             return self
         at, slack = (math.log10(value) if self.log else value), _OUTSIDE * (ends[1] - ends[0])
         if at > ends[1] + slack:
-            return replace(self, high=max(value, min(_round_away(value, up=True), allowed[1])))
+            return replace(self, high=max(value, min(round_away(value, up=True), allowed[1])))
         if at < ends[0] - slack:
-            return replace(self, low=min(value, max(_round_away(value, up=False), allowed[0])))
+            return replace(self, low=min(value, max(round_away(value, up=False), allowed[0])))
         return self
 
     def position(self, value: float) -> float:
@@ -158,49 +159,6 @@ class FieldSpec:
     def name(self) -> str:
         """Dotted path of the field, as in ``--set``."""
         return ".".join(map(str, self.path))
-
-
-def round_step(width: float) -> float:
-    """Largest of 1, 2, 5 times a power of ten that is at most ``width``.
-
-    Examples
-    --------
-    >>> round_step(0.0130), round_step(0.0051), round_step(7.0)
-    (0.01, 0.005, 5.0)
-    """
-    power = math.floor(math.log10(width))
-    mantissa = width / 10.0**power
-    factor = next(f for f in (5, 2, 1) if mantissa >= f - 1e-9)
-    return float(f"{factor}e{power}")
-
-
-def _round_away(value: float, *, up: bool) -> float:
-    """Nearest of 0 and of 1, 2, 5 times a power of ten, of either sign: from a value upwards or downwards.
-
-    Examples
-    --------
-    >>> _round_away(3.4, up=True), _round_away(3.4, up=False), _round_away(-12.0, up=False)
-    (5.0, 2.0, -20.0)
-    """
-    size = abs(value)
-    if size == 0.0:
-        return 0.0
-    if up != (value > 0.0):
-        return math.copysign(round_step(size), value)
-    power = math.floor(math.log10(size))
-    larger = (float(f"{factor}e{power}") for factor in (1, 2, 5, 10))
-    return math.copysign(next(number for number in larger if number >= size * (1.0 - 1e-9)), value)
-
-
-def significant(value: float, digits: int) -> float:
-    """Round to significant digits.
-
-    Examples
-    --------
-    >>> significant(0.0087902, 3), significant(12345.6, 3), significant(0.0, 3)
-    (0.00879, 12300.0, 0.0)
-    """
-    return float(f"{value:.{digits - 1}e}") if math.isfinite(value) else value
 
 
 def fields(model: type[BaseModel], path: Path, prefix: str = "") -> list[FieldSpec]:

@@ -11,9 +11,10 @@ from navcore.foundation.with_unit import read_with_unit
 from schuler_bench.bridge.boxes import LIST, mark_number_box
 from schuler_bench.bridge.controls import id_of, set_slider_range
 from schuler_bench.bridge.mends import plain_viser
-from schuler_bench.editing import form, typed
+from schuler_bench.editing import typed
 from schuler_bench.editing.choices import choice_words, chosen
 from schuler_bench.editing.form import FieldSpec, Path, Slider
+from schuler_bench.editing.rounding import round_step
 from schuler_bench.shell import notices
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class Control:
         label, slider = spec.label + (EXACT if spec.slider is not None else ""), spec.slider
         step = 1.0
         if slider is not None and spec.kind == "number":
-            step = form.round_step(slider.low) if slider.log else slider.step
+            step = round_step(slider.low) if slider.log else slider.step
         box = gui.add_text(label, self.as_text(value), hint=hint, order=order + 0.2)
         mark_number_box(gui, box, step)
         return box

@@ -228,12 +228,9 @@ class NetworkParameters(Entry):
         return None
 
     def with_damping(self, coefficient: float) -> NetworkParameters:
-        """Return a network that has a `damping_field` with another damping coefficient.
+        """Return a network that has a `damping_field` with another coefficient, xi or zeta.
 
-        Parameters
-        ----------
-        coefficient : float
-            xi or zeta; not checked against the range of the field.
+        It is not checked against the range of the field.
         """
         return self.model_copy(update={self.damping_field: coefficient})
 
@@ -370,15 +367,13 @@ def linear_network(
     if len(den) == 0 or len(num) == 0:
         raise refuse("", None, Text("H(s) must have a numerator and a denominator that are not zero"))
     if len(num) > len(den):
-        raise refuse(
-            "", None, Text("H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
-        )
+        proper = Text("H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
+        raise refuse("", None, proper)
     if len(den) - 1 > MAX_ORDER:
-        raise refuse(
-            "",
-            None,
-            Text("H(s) has {den} poles: at most {max_order} can run", den=len(den) - 1, max_order=MAX_ORDER),
+        most = Text(
+            "H(s) has {den} poles: at most {max_order} can run", den=len(den) - 1, max_order=MAX_ORDER
         )
+        raise refuse("", None, most)
     feedback = None if feedback_p is None else np.asarray(feedback_p, dtype=float) / den[0]
     num, den = num / den[0], den / den[0]
     while num[-1] == 0.0 and den[-1] == 0.0:  # a common root at s = 0 would make H(0) = 0/0

@@ -23,6 +23,7 @@ from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
 from schuler_bench.editing import form, typed
 from schuler_bench.editing.form import FieldSpec, Slider
+from schuler_bench.editing.rounding import significant
 from schuler_bench.editing.typed import unit_of
 
 BLOCKS: list[type[BaseModel]] = [
@@ -124,9 +125,9 @@ def test_a_slider_grows_to_a_round_end_or_not_at_all(
 
 @given(st.floats(1e-9, 1e9), st.integers(1, 9))
 def test_significant_keeps_the_digits_asked_for(value: float, digits: int) -> None:
-    rounded = form.significant(value, digits)
+    rounded = significant(value, digits)
     assert math.isclose(rounded, value, rel_tol=0.51 * 10.0 ** (1 - digits))
-    assert form.significant(rounded, digits) == rounded
+    assert significant(rounded, digits) == rounded
 
 
 @given(st.lists(st.complex_numbers(max_magnitude=1e3, allow_nan=False), max_size=4))

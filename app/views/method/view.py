@@ -22,6 +22,7 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.needs import meets
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec, Path
+from schuler_bench.editing.rounding import significant
 from schuler_bench.plots.effective import earth_mode_text
 from schuler_bench.plots.legend import severity, warnings_for
 from schuler_bench.plots.units import number, settling
@@ -307,7 +308,7 @@ def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
 
 def _shown(value: Any) -> Any:
     # What follows from other parameters has endless digits; six are shown, all are used.
-    return form.significant(value, 6) if isinstance(value, float) else value
+    return significant(value, 6) if isinstance(value, float) else value
 
 
 VIEW = MethodView
