@@ -53,6 +53,15 @@ def speed_warnings(recording: Recording) -> list[str]:
         if slip
         else Text("a wrong unit or scale, or a log that fails")
     )
+    if through == 0.0:
+        return [
+            Text(
+                "the speed through the water ({source}) is 0 while the ship makes {ground:.1f} kn over "
+                "ground: the log fails, or is not in the water",
+                source=water.source,
+                ground=ground / KNOT,
+            )
+        ]
     if difference > _STRONGEST_CURRENT_MPS:
         return [
             Text(
@@ -79,8 +88,9 @@ def speed_warnings(recording: Recording) -> list[str]:
 
 
 def slip_of(ratio: float, slips: Mapping[float, str], within: float) -> str:
-    """Slip whose ratio lies within a share of a ratio of two speeds; empty where none does."""
-    return next((words for size, words in slips.items() if abs(ratio / size - 1.0) < within), "")
+    """Slip whose ratio is nearest to one of two speeds; empty where none is within a share of it."""
+    size = min(slips, key=lambda one: abs(np.log(max(ratio, 1e-30) / one)))
+    return slips[size] if abs(ratio / size - 1.0) < within else ""
 
 
 def _over_ground(recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:

@@ -21,6 +21,11 @@ _LONGEST_SPIKE = 15
 _FASTEST_MPS, _FAR_M = 60.0, 300.0
 """A step between positions that is longer than this way is none of a ship."""
 _MOST_RUNS = 5
+_STILL_S, _FEWEST_STILL, _STILL_STEP_M = 10.0, 8, 30.0
+_TIMES_USUAL, _SLOWEST_MPS = 8.0, 0.5
+"""Positions stand still while the ship moves: for so long and so many, before a step so long and so fast."""
+_LONGEST_RUN_S, _CLOSE_S, _MOST_STEPS = 600.0, 5.0, 2000
+"""Of a heading that is far off between two steps, each from one sample to the next no later than this."""
 _NAMES = {
     "water": Text("speed through water"),
     "ground": Text("speed over ground along axes"),
@@ -50,14 +55,17 @@ def suspect_warnings(recording: Recording) -> list[str]:
                 )
             )
         if name == "position":
-            words += _places_apart(series)
+            words += place_words(series)
         if name not in _LARGEST_STEP or np.count_nonzero(series.valid) < 3 * _LONGEST_SPIKE:
             continue
         kept = np.flatnonzero(series.valid)
         values = series.values[kept]
         if name == "heading":
             values = np.unwrap(values, axis=0)
-        spikes = kept[_spikes(values, _LARGEST_STEP[name])]
+        spikes = _spikes(values, _LARGEST_STEP[name])
+        if name == "heading":
+            spikes = np.union1d(spikes, _turned_runs(series.time_s[kept], values[:, 0]))
+        spikes = kept[spikes]
         if spikes.size:
             words.append(
                 Text.plural(
@@ -80,16 +88,54 @@ def suspect_warnings(recording: Recording) -> list[str]:
     return words
 
 
-def _places_apart(series: Series) -> list[str]:
-    """Say which runs of positions lie where no ship gets to from the others, be they at the ends."""
-    far = np.flatnonzero(_far_steps(series.values, series.time_s))
+def place_words(series: Series) -> list[str]:
+    """Say which runs of positions are none of a ship: those that she does not get to, and those that stand.
+
+    Parameters
+    ----------
+    series : Series
+        Latitude and longitude, rad.
+
+    Returns
+    -------
+    list of str
+        What is wrong with each run, with its times; at most five.
+    """
+    apart, still = _places_apart(series), _still_places(series)
+    words = [_told_apart(series, *run) for run in apart] + [_told_still(series, *run) for run in still]
+    return words[:_MOST_RUNS]
+
+
+def _places_apart(series: Series) -> list[tuple[int, int]]:
+    """First and last of the runs of positions that no ship gets to from the others, be they at the ends."""
+    far = np.flatnonzero(_far_steps(series.values, _since_a_change(series)))
     if far.size == 0:
         return []
     bounds = np.concatenate([[0], far + 1, [series.time_s.size]])
     runs = list(zip(bounds[:-1].tolist(), (bounds[1:] - 1).tolist(), strict=True))
     longest = int(np.argmax(np.diff(bounds)))
-    apart = [*_beyond(series, runs[longest::-1], -1)[::-1], *_beyond(series, runs[longest:], 1)]
-    return [_told_apart(series, *run) for run in apart[:_MOST_RUNS]]
+    return [*_beyond(series, runs[longest::-1], -1)[::-1], *_beyond(series, runs[longest:], 1)]
+
+
+def _since_a_change(series: Series) -> np.ndarray:
+    """Time of each position, s, but that of the first of those that are the very same: a ship went on."""
+    changed = np.concatenate([[True], (np.diff(series.values[:, :2], axis=0) != 0.0).any(axis=1)])
+    begin = series.time_s[np.maximum.accumulate(np.where(changed, np.arange(changed.size), 0))]
+    return np.stack([begin, series.time_s])
+
+
+def _still_places(series: Series) -> list[tuple[int, int]]:
+    """First and last of the runs of positions that stand until they step to where the ship has got to."""
+    begin, time_s = _since_a_change(series)
+    if time_s.size < _FEWEST_STILL:
+        return []
+    ways, step_s = _ways(series.values), np.diff(time_s)
+    stood_s = time_s[:-1] - begin[:-1]
+    usual = float(np.median(ways / step_s))
+    late = (stood_s > np.maximum(_STILL_S, _FEWEST_STILL * step_s)) & (ways > _STILL_STEP_M)
+    late &= (ways / step_s > _TIMES_USUAL * usual) & (usual > _SLOWEST_MPS)
+    places = np.flatnonzero(late)
+    return [(int(np.searchsorted(time_s, begin[at])), int(at)) for at in places]
 
 
 def _beyond(series: Series, runs: list[tuple[int, int]], way: int) -> list[tuple[int, int]]:
@@ -98,13 +144,23 @@ def _beyond(series: Series, runs: list[tuple[int, int]], way: int) -> list[tuple
     found: list[tuple[int, int]] = []
     for run in runs[1:]:
         pair = np.array([ends[1], run[0]] if way > 0 else [run[1], ends[0]])
-        if not _far_steps(series.values[pair], series.time_s[pair]).any():
+        if not _far_steps(series.values[pair], np.stack([series.time_s[pair]] * 2)).any():
             ends = run
         elif found and abs(run[0 if way > 0 else 1] - found[-1][1 if way > 0 else 0]) == 1:
             found[-1] = (found[-1][0], run[1]) if way > 0 else (run[0], found[-1][1])
         else:
             found.append(run)
     return found
+
+
+def _told_still(series: Series, first: int, last: int) -> str:
+    return Text(
+        "positions: {count} from {when} are the very same though the ship moves, and the next one lies "
+        "{off:.0f} m on: leave the rows out",
+        count=last - first + 1,
+        when=_when(series, first, last),
+        off=float(_ways(series.values[[last, last + 1]])[0]),
+    )
 
 
 def _told_apart(series: Series, first: int, last: int) -> str:
@@ -134,8 +190,9 @@ def _ways(places: np.ndarray) -> np.ndarray:
     return np.hypot(meridian * north, prime_vertical * np.cos(places[1:, 0]) * east)
 
 
-def _far_steps(places: np.ndarray, time_s: np.ndarray) -> np.ndarray:
-    return _ways(places) > _FAR_M + _FASTEST_MPS * np.diff(time_s)
+def _far_steps(places: np.ndarray, times_s: np.ndarray) -> np.ndarray:
+    """Which steps are longer than a ship gets from the first time of a place to the second of the next."""
+    return _ways(places) > _FAR_M + _FASTEST_MPS * (times_s[1, 1:] - times_s[0, :-1])
 
 
 def _when(series: Series, first: int, last: int) -> str:
@@ -161,6 +218,24 @@ def _spikes(values: np.ndarray, largest: float) -> np.ndarray:
         and (begin == 0 or steps[begin - 1] > largest)
         and (end == len(values) or steps[end - 1] > largest)
     ]
+    return np.concatenate(found) if found else np.empty(0, dtype=int)
+
+
+def _turned_runs(time_s: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Places of the headings, shape (n,), that step away and back farther than the ship turns meanwhile."""
+    turns = (np.diff(heading) + np.pi) % (2.0 * np.pi) - np.pi
+    steps = np.flatnonzero((np.abs(turns) > _LARGEST_STEP["heading"]) & (np.diff(time_s) <= _CLOSE_S))
+    if steps.size > _MOST_STEPS:
+        return np.empty(0, dtype=int)
+    found: list[np.ndarray] = []
+    after = 0
+    for out, back in zip(steps[:-1].tolist(), steps[1:].tolist(), strict=True):
+        between = abs((heading[back + 1] - heading[out] + np.pi) % (2.0 * np.pi) - np.pi)
+        if out < after or time_s[back] - time_s[out] > _LONGEST_RUN_S:
+            continue
+        if between < 0.5 * min(abs(turns[out]), abs(turns[back])):
+            found.append(np.arange(out + 1, back + 1))
+            after = back + 1
     return np.concatenate(found) if found else np.empty(0, dtype=int)
 
 

@@ -18,6 +18,7 @@ from navcore.foundation.units import DEG
 from navcore.io.column_map import map_field
 from navcore.io.recording import MOST_BRIDGED, Window, load, require_cover, require_no_gap, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
+from navcore.io.suspects import place_words
 from navcore.io.times.set_clocks import gap_doubt
 from navcore.motion.base import MotionParameters, Streams
 from navcore.motion.filling import sample
@@ -367,6 +368,8 @@ def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
     worst, distance = outliers(position, metres)
     if worst.size == 0:
         return
+    if words := place_words(position):
+        raise InputError([Fault("", "file", position.source, one) for one in words])
     faults = [
         Fault(
             "",

@@ -12,6 +12,7 @@ from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, require_cover, require_no_gap, shared_window
 from navcore.io.series import Recording, Series
 from navcore.io.stretches import stretch_warnings
+from navcore.io.suspects import suspect_warnings
 from navcore.motion.base import MotionParameters
 from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
@@ -230,6 +231,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
     else:
         yield from speed_warnings(Recording(track.position, track.recording.velocity, recording.water))
         yield from course_warnings(track.recording)
+        yield from suspect_warnings(Recording(position=track.position, heading=track.recording.heading))
         yield from (one.notice for one in corrections(moving, reference))
     if track is not None and not along_axes and series.file == track.position.file:
         yield Text(

@@ -9,7 +9,14 @@ import pytest
 
 from navcore.checks.file import check_file
 from navcore.checks.report import FileReport
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import KNOT
 from navcore.io.recording import read_recording
+from navcore.motion.base import Site
+from navcore.motion.track import TrackMotion
+from navcore.sensors.recorded import recording_notices
+from navcore.sensors.reference import Reference
 from tests.nmea import sentence
 
 START = datetime(2024, 5, 17, 9, 30, tzinfo=UTC)
@@ -193,3 +200,62 @@ def test_a_fix_without_a_date_puts_the_loggers_clock_right(tmp_path: Path, fix: 
     assert report.details["quantities"]["heading"]["start_utc"] == START_TEXT
     assert "the logger's clock is +33.0 s" in said(report)
     assert np.isfinite(read_recording(tmp_path / "log.nmea").quantities()["heading"].values).all()
+
+
+# ---------------------------------------------------------------- readings that stand still or are far off
+
+
+def track_of(folder: Path, row: Callable[[int], str]) -> Path:
+    """A ship that turns, as a table; ``row`` gives the cells behind the time."""
+    lines = [f"{moment(k):%Y-%m-%dT%H:%M:%SZ},{row(k)}" for k in range(400)]
+    path = folder / "track.csv"
+    path.write_text("\n".join(["utc,lat,lon,heading_deg,stw_kn", *lines]) + "\n")
+    return path
+
+
+def test_positions_that_stand_while_the_ship_moves_are_named(tmp_path: Path) -> None:
+    def row(k: int) -> str:
+        lat, lon = place(100 if 100 <= k < 160 else k)
+        return f"{lat:.7f},{lon:.7f},60,8.1"
+
+    (told,) = [one for one in check_file(track_of(tmp_path, row)).warnings if "positions" in one]
+    assert "60 from 2024-05-17T09:31:40.0Z to 2024-05-17T09:32:39.0Z are the very same" in told
+
+
+@pytest.mark.parametrize("bad", [range(50, 90), range(50, 55)])
+def test_a_heading_that_is_far_off_for_a_while_is_named(tmp_path: Path, bad: range) -> None:
+    path = track_of(
+        tmp_path,
+        lambda k: f"{place(k)[0]:.7f},{place(k)[1]:.7f},{0 if k in bad else 60 + 0.05 * k:.2f},8.1",
+    )
+    (told,) = [one for one in check_file(path).warnings if one.startswith("heading")]
+    assert f"{len(bad)} samples from 2024-05-17T09:30:50.0Z" in told
+    notices = recording_notices(
+        TrackMotion(file=str(path)), Reference(kind="file", file=str(path), frame="body")
+    )
+    assert told in notices
+
+
+@pytest.mark.parametrize("bad", [range(5), range(395, 400), range(100, 120)])
+def test_a_run_names_the_bad_positions_and_no_good_one(tmp_path: Path, bad: range) -> None:
+    path = track_of(tmp_path, lambda k: f"{place(k)[0] + (k in bad):.7f},{place(k)[1]:.7f},60,8.1")
+    with pytest.raises(InputError) as caught:
+        TrackMotion(file=str(path)).truth(10, 1.0, Site(0.0, 0.0, 0.0), WGS84)
+    first, last = (f"{moment(k):%H:%M:%S}.0Z" for k in (bad[0], bad[-1]))
+    assert f"positions: {len(bad)} from" in str(caught.value)
+    assert first in str(caught.value) and last in str(caught.value)
+
+
+def test_a_log_that_reads_nothing_is_no_stream(tmp_path: Path) -> None:
+    path = track_of(tmp_path, lambda k: f"{place(k)[0]:.7f},{place(k)[1]:.7f},60,0")
+    told = "\n".join(check_file(path).warnings)
+    assert "is 0 while the ship makes 8.0 kn" in told and "stream" not in told
+
+
+@pytest.mark.parametrize(("factor", "slip"), [(1.852, "km/h"), (1.0 / KNOT, "knots taken for m/s")])
+def test_the_nearest_unit_is_named(tmp_path: Path, factor: float, slip: str) -> None:
+    report = checked(
+        tmp_path, "utc,lat,lon,sog_kn,cog_deg",
+        lambda k: f"{moment(k):%Y-%m-%dT%H:%M:%SZ},{place(k)[0]:.7f},{place(k)[1]:.7f},{8 * factor:.3f},60",
+    )  # fmt: skip
+    assert slip in said(report)

@@ -199,7 +199,7 @@ def test_a_position_far_off_its_neighbours_is_named(tmp_path):
     with pytest.raises(InputError) as caught:
         truth_of(path)
     assert len(caught.value.faults) == 1
-    assert "at 1970-01-01T00:01:40.0Z lies 1114 m off its neighbours" in str(caught.value)
+    assert "positions: 1 from 100 s lie 1.12 km from those before and after" in str(caught.value)
 
 
 def test_a_gap_in_a_turn_is_no_outlier(tmp_path):
