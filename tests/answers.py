@@ -3,7 +3,7 @@
 import re
 
 from navcore.engine.run import Run
-from schuler_bench.views.learn.lessons import Question, right_choice
+from schuler_bench.views.learn.asked import Question, right_choice
 from schuler_bench.views.learn.names import named
 
 

@@ -143,6 +143,9 @@ class Visitor:
             except TimeoutError:
                 return
 
+    def heard(self, content: str) -> None:
+        """Take a piece of HTML or Markdown that came; nothing unless a subclass wants it."""
+
     def _send(self, message: dict[str, Any]) -> None:
         self._socket.send(msgspec.msgpack.encode(message))
 
@@ -158,6 +161,8 @@ class Visitor:
                 self._held[message["uuid"]] = props["value"]
             if message.get("type") == "NotificationShowMessage":
                 self.notices.append((str(props.get("title")), str(props.get("body"))))
+            if "content" in props:
+                self.heard(str(props["content"]))
             if "[[method]]" in (content := str(props.get("content", ""))):
                 self.text = content
             number = _RUN.search(content[:200])

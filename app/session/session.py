@@ -20,6 +20,7 @@ from schuler_bench.jobs.scheduler import scheduler
 from schuler_bench.jobs.searches import Searches
 from schuler_bench.jobs.words import for_a_page
 from schuler_bench.jobs.worker import Watch, Worker
+from schuler_bench.session.classroom import Classroom
 from schuler_bench.session.display import Display
 from schuler_bench.session.history import History, State, first_editable
 from schuler_bench.session.keeping import OwnKeeping
@@ -61,6 +62,8 @@ class Session:
         ``shared_pins(address)`` gives those of a shared state, as of `Pins.to_json`; None: no such state.
     restored : bool
         It was kept, or is a copy of one that was: not a new visitor's.
+    classroom : Classroom or None
+        The class that the visitors of this server form.
     keeping : OwnKeeping
         Whether the session is kept.
     pages : OpenPages
@@ -102,6 +105,7 @@ class Session:
         self.share: Callable[[], str] = lambda: self.id
         self.shared_pins: Callable[[str], Kept | None] = lambda _: None
         self.restored = False
+        self.classroom: Classroom | None = None
         self.keeping = OwnKeeping(lambda: self.pages.tell(lambda view: view.keeping_changed()))
         self.run: Run | None = None
         self.prepared: Run | None = None

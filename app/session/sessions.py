@@ -16,6 +16,7 @@ from navcore.foundation.stage_cache import bytes_of
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import copied_from, log_name, new_shared_id, shared_in
+from schuler_bench.session.classroom import Classroom
 from schuler_bench.session.document import (
     BROKEN,
     IN_PART,
@@ -72,6 +73,8 @@ class Sessions:
         ``on_answer(seconds)`` after every run that is shown.
     keeping : Keeping, optional
         Whether anything is kept at present.
+    classroom : Classroom, optional
+        The class that the visitors form.
     """
 
     def __init__(
@@ -80,9 +83,10 @@ class Sessions:
         store: Store | None = None,
         on_answer: Callable[[float], None] = lambda _: None,
         keeping: Keeping | None = None,
+        classroom: Classroom | None = None,
     ) -> None:
         self._first, self._store, self._on_answer = first or first_scenario, store, on_answer
-        self._keeping = keeping or Keeping()
+        self._keeping, self._classroom = keeping or Keeping(), classroom
         self._lock = threading.Lock()
         self._by_id: OrderedDict[str, Session] = OrderedDict()
         self._opening: dict[str, threading.Lock] = {}
@@ -158,6 +162,7 @@ class Sessions:
         scenario, origin = self._first()
         session = Session(id, scenario, origin, self._files_folder(id))
         session.prepared, session.keeping.server = self.prepared, self._keeping
+        session.classroom = self._classroom
         session.on_change = partial(self._changed, session)
         shared = copied_from(id)
         try:

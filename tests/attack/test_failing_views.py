@@ -18,7 +18,7 @@ from tests.attack.wire import ask
 from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
-    from schuler_bench.serve import Dashboard
+    from schuler_bench.dashboard import Dashboard
 
 pytestmark = pytest.mark.attack
 

@@ -12,10 +12,11 @@ import schuler_bench
 from navcore.foundation import guarded
 from schuler_bench.bench.visitor import PAGE_STATE
 from schuler_bench.bench.visitor import Visitor as Page
+from schuler_bench.dashboard import Dashboard
 from schuler_bench.http.metrics import Metrics
 from schuler_bench.http.server import DashboardServer
 from schuler_bench.logs import begin_logging
-from schuler_bench.serve import Dashboard, open_dashboard
+from schuler_bench.serve import open_dashboard
 from tests.attack.conftest import TOKEN, running
 from tests.attack.wire import ask, upload, visit
 from tests.browser.fields import label_of

@@ -14,8 +14,9 @@ import pytest
 from navcore.foundation import guarded
 from schuler_bench.bench.process import environment
 from schuler_bench.bench.visitor import PAGE_STATE
+from schuler_bench.dashboard import Dashboard
 from schuler_bench.http.ids import SessionIds
-from schuler_bench.serve import Dashboard, open_dashboard
+from schuler_bench.serve import open_dashboard
 from schuler_bench.session.store import open_store, session_key
 from tests.attack.conftest import eventually, running
 from tests.attack.wire import ask, visit
@@ -98,7 +99,7 @@ def test_work_is_kept_once_the_other_server_has_ended(
     serving: Callable[[], tuple[int, Dashboard]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What was known at the start was never tried again; and what the other server had kept must stay."""
-    monkeypatch.setattr("schuler_bench.serve.AGAIN_AFTER_S", 0.2)
+    monkeypatch.setattr("schuler_bench.dashboard.AGAIN_AFTER_S", 0.2)
     other = open_store(tmp_path / "state")
     assert other is not None
     ids = SessionIds(session_key(tmp_path / "state"))

@@ -13,7 +13,7 @@ from tests.attack.conftest import eventually
 from tests.attack.wire import ask
 
 if TYPE_CHECKING:
-    from schuler_bench.serve import Dashboard
+    from schuler_bench.dashboard import Dashboard
 
 pytestmark = pytest.mark.attack
 

@@ -7,8 +7,9 @@ import pytest
 from playwright.sync_api import Browser
 
 from navcore.scenario.file import load
+from schuler_bench.dashboard import Dashboard
 from schuler_bench.http.server import DashboardServer
-from schuler_bench.serve import Dashboard, open_dashboard
+from schuler_bench.serve import open_dashboard
 from schuler_bench.session.session import Session
 from tests.browser.driver import SIZES, Bench
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
+from schuler_bench.dashboard import Dashboard
 from schuler_bench.http.server import DashboardServer
-from schuler_bench.serve import Dashboard
 from tests.browser.firefox import FIREFOX, Firefox
 
 RIGHT = "\ue014"

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from navcore import load
+from schuler_bench.dashboard import Dashboard
 from schuler_bench.editing.typed import write_number
 from schuler_bench.http.server import DashboardServer
-from schuler_bench.serve import Dashboard
 from schuler_bench.session.session import Session
 from tests.browser.driver import Bench
 from tests.browser.fields import box_labels

@@ -41,17 +41,8 @@ from schuler_bench.views.explain.view import (
     key_of,
     told_html,
 )
-from schuler_bench.views.learn.lessons import (
-    Lesson,
-    Question,
-    holds,
-    is_right,
-    lessons,
-    read_lesson,
-    right_choice,
-    to_html,
-    without,
-)
+from schuler_bench.views.learn.asked import Question, holds, is_right, right_choice
+from schuler_bench.views.learn.lessons import Lesson, lessons, read_lesson, to_html, without
 from schuler_bench.views.learn.names import Named, named
 from schuler_bench.views.learn.view import spec_at
 from schuler_bench.views.log.view import _KINDS
@@ -229,7 +220,7 @@ def test_a_step_shows_the_curves_that_it_speaks_of(lesson: Lesson, index: int) -
 def test_every_number_in_a_step_is_found_in_its_run(lesson: Lesson, index: int) -> None:
     step, run = lesson.steps[index], run_of(lesson.id, index)
     assert run.status == "ok"
-    why = step.question.why if step.question else ""
+    why = "".join(one.why for one in (step.question, step.sketch, step.task) if one is not None)
     for name in names_in(step.text + why):
         # The text of a step may stand beside the run of the step before: then it says "press Show me".
         assert math.isfinite(named(name, run).value), name

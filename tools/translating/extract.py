@@ -103,10 +103,15 @@ def _assets() -> Iterator[Text]:
             yield from pieces(str(lesson.scenario.get(name, "")), where, prose=False)
         for step in lesson.steps:
             yield from pieces(f"<p>{step.title}</p>{to_html(step.text, None)}", where)
-            if step.question is not None:
-                asked = step.question
-                for text in (asked.ask, asked.why, *(choice.say for choice in asked.choices)):
+            choices = () if step.question is None else step.question.choices
+            conditions = () if step.task is None else step.task.conditions
+            for asked in filter(None, (step.question, step.sketch, step.task)):
+                for text in (asked.ask, asked.why):
                     yield from pieces(to_html(text, None), where)
+            for choice in (*choices, *conditions):
+                yield from pieces(to_html(choice.say, None), where)
+        for line in (*lesson.goals, *lesson.misconceptions):
+            yield from pieces(to_html(line, None), where)
 
 
 def _fields() -> Iterator[Text]:

@@ -7,7 +7,7 @@
     const form = event.target;
     if (!(form instanceof HTMLFormElement) || form.dataset.answer === undefined) return;
     event.preventDefault();
-    window.schuler.command(form.dataset.answer, "answer", form.querySelector("input").value);
+    window.schuler.command(form.dataset.answer, form.dataset.what ?? "answer", form.querySelector("input").value);
   });
 
   // HTML that is replaced takes the focus with it: it goes back to what was pressed, or to what has its place.

@@ -3,7 +3,7 @@
 A file begins with TOML between two lines ``+++``: ``title``, ``about`` (one sentence), and the scenario it
 plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown
 with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run
-(`schuler_bench.views.learn.names`), and at most one each of two fenced blocks of TOML:
+(`schuler_bench.views.learn.names`), and at most one each of four fenced blocks of TOML:
 
 ``toml action``
     The button "Show me". ``set``: fields of the scenario as on the command line, each step beginning from the
@@ -12,6 +12,14 @@ with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present
     `schuler_bench.session.display.Display`; ``method``: number of the method to edit; ``sliders``: fields
     that get a slider in the lesson.
 
+``toml sketch``
+    The learner draws a curve before it is shown: ``ask``, ``curve`` (number of a method and an error,
+    ``0.phi_e``), ``why`` (shown with the run's curve).
+
+``toml task``
+    An open task that the learner's own run meets or not: ``ask``, ``conditions``: tables with ``say`` and
+    ``when``, ``why`` (shown once all hold).
+
 ``toml question``
     ``ask``, ``why`` (shown once it is answered rightly), and either ``answer`` (a name) and its ``tolerance``
     (relative), or ``choices``: tables with ``say`` and ``when``, a comparison of names and numbers
@@ -19,7 +27,6 @@ with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present
     the run: no answer is typed into a file.
 """
 
-import operator
 import os
 import re
 import tomllib
@@ -30,34 +37,26 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.numbers import read_number, read_whole
 from navcore.foundation.text import Text
 from navcore.scenario.file import apply_overrides, load, resolve_files
 from navcore.scenario.model import Scenario
 from schuler_bench.session.display import Display
+from schuler_bench.views.learn.asked import Part, Question, Sketch, Task
 from schuler_bench.views.learn.names import named
 
 _FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _PLACE = re.compile(r"\(at line (\d+), column \d+\)|\(at end of document\)")
-_FENCE = re.compile(r"^```toml (action|question)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)
+_FENCE = re.compile(r"^```toml (action|question|sketch|task)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)
 _MATH = re.compile(r"\$\$(.+?)\$\$|\$(.+?)\$", re.DOTALL)
 _NAME = re.compile(r"\{\{([a-z0-9_.]+)\}\}")
-_COMPARISON = re.compile(r"([^<>]*)(<=|>=|<|>)(.*)")
-_TERM = re.compile(r"(?:([0-9.eE+-]+)\s*\*\s*)?([a-z][a-z0-9_.]*)")
 _MARK = "\ue000{}\ue001"
 """Stands for a formula while the Markdown around it is read."""
-_SIGNS: dict[str, Callable[[float, float], bool]] = {
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
 MISSING = Text("(press Show me)")
 """Stands where the present run has no such number."""
 OWN = "SCHULER_LESSONS"
@@ -66,11 +65,7 @@ OWN = "SCHULER_LESSONS"
 _T = TypeVar("_T")
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Action(_Part):
+class Action(Part):
     """Action of the button "Show me"; see the module's text."""
 
     set: tuple[str, ...] = ()
@@ -86,24 +81,7 @@ class Action(_Part):
         return {"curves": self.curves, **self.display}
 
 
-class Choice(_Part):
-    """One of the answers to choose from, and when it is right."""
-
-    say: str
-    when: str
-
-
-class Question(_Part):
-    """A question, and how its answer follows from a run; see the module's text."""
-
-    ask: str
-    why: str
-    answer: str = ""
-    tolerance: float = Field(default=0.05, gt=0.0, le=0.5)
-    choices: tuple[Choice, ...] = ()
-
-
-class Step(_Part):
+class Step(Part):
     """A step of a lesson.
 
     Attributes
@@ -114,6 +92,10 @@ class Step(_Part):
         What its button does.
     question : Question or None
         What it asks.
+    sketch : Sketch or None
+        The curve that the learner predicts.
+    task : Task or None
+        What the learner's own run should meet.
     line : int
         Of its heading in the file.
     """
@@ -122,10 +104,12 @@ class Step(_Part):
     text: str
     action: Action | None = None
     question: Question | None = None
+    sketch: Sketch | None = None
+    task: Task | None = None
     line: int = 0
 
 
-class Lesson(_Part):
+class Lesson(Part):
     """A lesson.
 
     Attributes
@@ -140,6 +124,10 @@ class Lesson(_Part):
         the same as a table.
     steps : tuple of Step
         In order.
+    minutes : int
+        How long a class takes.
+    goals, misconceptions : tuple of str
+        For the teacher: what one can do after it, and what learners expect that is not so.
     folder : str
         Of the file: what a scenario of its own reads is named from there.
     """
@@ -149,6 +137,9 @@ class Lesson(_Part):
     about: str
     preset: str = ""
     scenario: dict[str, Any] = Field(default_factory=dict)
+    minutes: int = Field(default=0, ge=0, le=240)
+    goals: tuple[str, ...] = ()
+    misconceptions: tuple[str, ...] = ()
     steps: tuple[Step, ...]
     folder: str = ""
 
@@ -311,74 +302,9 @@ def _number_html(name: str, run: Run | None) -> str:
     )
 
 
-# ------------------------------------------------------------ answers
-
-
-def holds(comparison: str, run: Run) -> bool:
-    """Whether a comparison of names and numbers holds for a run.
-
-    Raises
-    ------
-    KeyError
-        It is no comparison, or a name is unknown.
-    """
-    match = _COMPARISON.fullmatch(comparison)
-    if match is None:
-        raise KeyError(comparison)
-    left, sign, right = match.groups()
-    return _SIGNS[sign](_term(left.strip(), run), _term(right.strip(), run))
-
-
-def _term(text: str, run: Run) -> float:
-    with suppress(ValueError):
-        return float(text)
-    match = _TERM.fullmatch(text)
-    if match is None:
-        raise KeyError(text)
-    factor, name = match.groups()
-    return float(factor or 1.0) * named(name, run).value
-
-
-def right_choice(question: Question, run: Run) -> int:
-    """Number of the choice that is right for a run.
-
-    Raises
-    ------
-    KeyError
-        Not exactly one is.
-    """
-    right = [i for i, choice in enumerate(question.choices) if holds(choice.when, run)]
-    if len(right) != 1:
-        raise KeyError(f"{question.ask}: {len(right)} choices are right")
-    return right[0]
-
-
 def without(lesson: Lesson | None) -> dict[str, Any]:
     """Fields of the display that a lesson sets, as they are without it: what it sets goes with it."""
     steps = () if lesson is None else lesson.steps
     named = {name for step in steps if step.action is not None for name in step.action.shown}
     plain = Display()
     return {name: getattr(plain, name) for name in sorted(named)}
-
-
-def is_right(question: Question, given: str, run: Run) -> bool:
-    """Whether an answer is right for a run.
-
-    Parameters
-    ----------
-    question : Question
-        What was asked.
-    given : str
-        Number of the choice, or the number that was typed.
-    run : Run
-        Of the scenario that the question is about.
-
-    Raises
-    ------
-    NotANumber
-        ``given`` is no number.
-    """
-    if question.choices:
-        return read_whole(given) == right_choice(question, run)
-    value = named(question.answer, run).value
-    return abs(read_number(given) - value) <= question.tolerance * abs(value)

@@ -48,7 +48,8 @@ from navcore.foundation.units import ARCSEC, DEG, HOUR
 from navcore.networks.discrete import discretise
 from navcore.quantities import ERRORS, TILT, VELOCITY, Kind
 
-_COLUMNS = {error.key: column for column, error in enumerate(ERRORS)}
+COLUMNS = {error.key: column for column, error in enumerate(ERRORS)}
+"""Key of an error -> its column in a plot."""
 STATISTICS = {"max": "max_abs", "rms": "rms", "mean": "mean", "final": "final", "end": "final"}
 """Name -> statistic of a run; ``end`` is the magnitude of ``final``."""
 _MIN, _DAY = 60.0, 86400.0
@@ -130,6 +131,11 @@ def _floor(run: Run, what: str) -> Named:
     return _in_unit(getattr(steady_budget(run.scenario).floor.rms, _BUDGETED[what].figure), _BUDGETED[what])
 
 
+def in_unit(value: float, key: str) -> Named:
+    """Error (SI) with a key of `COLUMNS`, in the unit in which a lesson speaks of it."""
+    return _in_unit(value, ERRORS[COLUMNS[key]].kind)
+
+
 def _in_unit(value: float, kind: Kind) -> Named:
     """Error (SI) of a kind; angles in arcseconds."""
     return Named(value / ARCSEC, '"') if kind.dimension == "angle" else Named(value, kind.unit)
@@ -181,7 +187,7 @@ def _whole(what: str, number: int, run: Run) -> Named:
 
 def _error(what: str, number: int, run: Run) -> Named:
     key, statistic = what.split(".")
-    error = ERRORS[_COLUMNS[key]]
+    error = ERRORS[COLUMNS[key]]
     value = run.methods[number].errors[error.name][STATISTICS[statistic]]
     return _in_unit(abs(value) if statistic == "end" else value, error.kind)
 
@@ -191,7 +197,7 @@ def _curve(what: str, number: int, run: Run) -> Named:
     if period != "period":
         raise KeyError(what)
     plot = run.methods[number].plot
-    values = plot.values[:, _COLUMNS[key]]
+    values = plot.values[:, COLUMNS[key]]
     signs = np.sign(values)
     # A start at exactly zero is no crossing.
     at = np.flatnonzero(signs[1:] * signs[:-1] < 0)

@@ -15,16 +15,8 @@ from navcore.foundation.inputs import TooLargeError, read_bytes
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.session.display import Display
-from schuler_bench.views.learn.lessons import (
-    OWN,
-    Action,
-    Lesson,
-    Question,
-    at_line,
-    lessons,
-    read_lesson,
-    right_choice,
-)
+from schuler_bench.views.learn.asked import Question, curve_of, met, right_choice
+from schuler_bench.views.learn.lessons import OWN, Action, Lesson, Step, at_line, lessons, read_lesson
 from schuler_bench.views.learn.names import named
 from schuler_bench.views.learn.view import spec_at
 
@@ -91,8 +83,9 @@ def lesson_faults(lesson: Lesson) -> Iterator[Fault]:
             continue
         if step.action is not None:
             yield from _action_faults(where, step.action, scenario)
-        texts = step.text + (step.question.why if step.question else "")
-        if step.question is None and not _NAMES.search(texts):
+        asked = [one for one in (step.question, step.sketch, step.task) if one is not None]
+        texts = step.text + "".join(one.why for one in asked)
+        if not asked and not _NAMES.search(texts):
             continue
         run = simulate(scenario)
         for name in dict.fromkeys(_NAMES.findall(texts)):
@@ -101,6 +94,7 @@ def lesson_faults(lesson: Lesson) -> Iterator[Fault]:
                 yield Fault(where, "", "{{" + name + "}}", allowed)
         if step.question is not None:
             yield from _question_faults(where, step.question, run)
+        yield from _prediction_faults(where, step, run)
 
 
 def _action_faults(where: str, action: Action, scenario: Scenario) -> Iterator[Fault]:
@@ -134,6 +128,28 @@ def _question_faults(where: str, question: Question, run: Run) -> Iterator[Fault
     elif not _known(question.answer, run):
         allowed = Text("must be the name of a number of this step's run, or there must be choices")
         yield Fault(where, "question.answer", question.answer, allowed)
+
+
+def _prediction_faults(where: str, step: Step, run: Run) -> Iterator[Fault]:
+    if step.sketch is not None:
+        try:
+            curve_of(step.sketch, run)
+        except KeyError:
+            allowed = Text(
+                "must be the number of a method and an error that is not zero in this step's run, such as "
+                "0.phi_e"
+            )
+            yield Fault(where, "sketch.curve", step.sketch.curve, allowed)
+    if step.task is not None:
+        try:
+            done = all(met(step.task, run))
+        except KeyError as error:
+            allowed = Text("must be comparisons of numbers of this step's run")
+            yield Fault(where, "task.conditions", error.args[0], allowed)
+        else:
+            if done:
+                allowed = Text("must not hold before anything was changed: all do in this step's run")
+                yield Fault(where, "task.conditions", None, allowed)
 
 
 def _known(name: str, run: Run) -> bool:

@@ -2,8 +2,9 @@
 
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import lru_cache
 from html import escape
 from typing import Any
 
@@ -15,14 +16,19 @@ from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec, Path
+from schuler_bench.session.classroom import Place
 from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
 from schuler_bench.shell.control import Control, Section
+from schuler_bench.shell.searching import show_html
 from schuler_bench.shell.view import Frame, Tab, View
-from schuler_bench.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html, without
+from schuler_bench.views.learn import asked
+from schuler_bench.views.learn.asked import Question, Sketch, is_right
+from schuler_bench.views.learn.lessons import Action, Lesson, lessons, to_html, without
+from schuler_bench.views.learn.shown import COMMAND, sketch_html, task_html
+from schuler_bench.views.learn.steps import below_html, list_html, question_html, step_html
+from schuler_bench.views.learn.together import Together
 
-COMMAND = "lesson"
-"""Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
-``show``, ``answer TEXT``."""
 _UNREADABLE = Text("Type a number, such as 84.4.")
 
 _RUNNING = Text("Running this step's scenario for the answer.")
@@ -39,19 +45,38 @@ class LearnView(View):
         self._lock = threading.RLock()
         self._followed = self._shown_step
         self._given: dict[tuple[int, int], str] = {}
+        self._sketched: dict[tuple[int, int], tuple[float, ...]] = {}
+        self._revealed: set[tuple[int, int]] = set()
         self._runner = frame.session.searches.runner
         self._judged_by = self._runner.result
         self._live: Scenario | None = None
         self._asked = 0
+        self._together = Together(frame.session)
         frame.commands.register(COMMAND, self.command)
 
     def build(self, tab: Tab) -> None:
         """Make the places of text, question and buttons, in this order."""
         gui = self.frame.gui
         with tab:
-            self._places = [gui.add_html("", order=order) for order in (0, 50, 60)]
+            self._class = gui.add_html("", order=-1, visible=False)
+            self._places = [gui.add_html("", order=order) for order in (0, 0.5, 50, 55, 60)]
             self._front = gui.add_html("", order=70)
         self._section = Section(gui, tab, self.frame.editor.edit, 1.0)
+        self._together.join(self._follow_class)
+
+    def close(self) -> None:
+        """Leave the class."""
+        self._together.leave()
+
+    @property
+    def _place(self) -> Place | None:
+        """Step that is open, as the class names it."""
+        lesson = self._current()
+        return None if lesson is None else (lesson.id, self._step)
+
+    @property
+    def _key(self) -> tuple[int, int]:
+        return self._lesson or 0, self._step
 
     @property
     def _lesson(self) -> int | None:
@@ -93,6 +118,11 @@ class LearnView(View):
             "step": lambda: self._go(self._lesson, int(rest)),
             "show": self._show_me,
             "answer": lambda: self._answer(rest.strip()),
+            "sketch": lambda: self._sketch(rest.strip()),
+            "again": self._draw_again,
+            "reveal": self._reveal,
+            "lead": lambda: self._lead(rest.strip()),
+            "stop": self._together.stop,
         }
         act = acts.get(what)
         if act is None or (rest and not rest.strip()) or (what in ("open", "step") and not rest.isdigit()):
@@ -107,6 +137,7 @@ class LearnView(View):
         elif lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps):
             left = {} if lesson == self._lesson else without(self._current())
             self.frame.show(**left, lesson=lessons()[lesson].id, lesson_step=step)
+        self._together.go(self._place)
 
     def _show_me(self) -> None:
         lesson, action = self._current(), self._action()
@@ -116,10 +147,52 @@ class LearnView(View):
         self._live = None
         session.change(scenario, None, origin=self._origin(lesson), selected=action.method)
         session.show(None, **action.shown, lesson_shown=session.display.lesson_shown + 1)
+        self._together.show()
 
     def _answer(self, given: str) -> None:
         if self._lesson is not None and given and len(given) < 40:
-            self._given[self._lesson, self._step] = given
+            self._given[self._key] = given
+            self._together.give(self._place, answer=given, right=False)
+
+    def _sketch(self, heights: str) -> None:
+        lesson = self._current()
+        if lesson is None or lesson.steps[self._step].sketch is None:
+            return
+        with suppress(ValueError):
+            self._sketched[self._key] = drawn = asked.read_heights(heights)
+            self._together.give(self._place, heights=drawn)
+
+    def _draw_again(self) -> None:
+        self._sketched.pop(self._key, None)
+        self._revealed.discard(self._key)
+        self._together.give(self._place, heights=())
+
+    def _reveal(self) -> None:
+        self._revealed.add(self._key)
+        self._together.reveal()
+
+    def _lead(self, code: str) -> None:
+        if not self._together.lead(code, self._place):
+            notices.tell(
+                self.frame.client, Text("Not possible"), [Text("That is not the code of the class.")]
+            )
+
+    def _follow_class(self) -> None:
+        """Go where the class is led, and show what it has given."""
+        with self.session.lock, self._lock:
+            news = self._together.news()
+            if news is not None:
+                led, shown = news
+                ids = [lesson.id for lesson in lessons()]
+                if led.place is not None and led.place[0] in ids and led.place != self._place:
+                    self.frame.commands.ask_page("front", "Learn")
+                    self._go(ids.index(led.place[0]), led.place[1])
+                if led.revealed:
+                    self._revealed.add(self._key)
+                if shown:
+                    self._show_me()
+            self._show(self.frame.editor.moved)
+        self.frame.client.flush()
 
     # ------------------------------------------------------------ showing
 
@@ -152,10 +225,22 @@ class LearnView(View):
         scenario, run = self.session.scenario, self.session.run
         with self._lock:
             lesson, action = self._current(), self._action()
-            texts = (_list_html(), "", "")
+            texts = (list_html(), "", "", "", "")
             if lesson is not None:
-                step = self._step_html(lesson, scenario, run)
-                texts = step, self._question_html(lesson), self._below_html(lesson)
+                step = lesson.steps[self._step]
+                texts = (
+                    step_html(
+                        lesson,
+                        self._step,
+                        self._spoken_of(lesson, run),
+                        fresh=scenario == self._scenario(),
+                    ),
+                    self._sketch_html(step.sketch),
+                    self._question_html(lesson),
+                    self._task_html(lesson, run),
+                    below_html(self._lesson or 0, self._step, len(lesson.steps)),
+                )
+            show_html(self._class, self._together.html(self._place, lesson))
             for handle, html in zip(self._places, texts, strict=True):
                 if handle.content != html:
                     handle.content, handle.visible = html, bool(html)
@@ -186,86 +271,40 @@ class LearnView(View):
     def _scenario(self) -> Scenario:
         return _scenario(self._lesson or 0, self._step)
 
-    def _step_html(self, lesson: Lesson, scenario: Scenario, run: Run | None) -> str:
-        step = lesson.steps[self._step]
-        dots = Text.joined(
-            "",
-            (
-                Text(
-                    '<button class="sb-dot{here}" data-command="{command} step {i}" '
-                    'aria-label="Step {number} of {count}: {title:html}"{current}></button>',
-                    here=" sb-here" * (i == self._step),
-                    command=COMMAND,
-                    i=i,
-                    number=i + 1,
-                    count=len(lesson.steps),
-                    title=s.title,
-                    current=" aria-current=step" * (i == self._step),
-                )
-                for i, s in enumerate(lesson.steps)
-            ),
+    def _sketch_html(self, sketch: Sketch | None) -> str:
+        if sketch is None:
+            return ""
+        return sketch_html(
+            sketch,
+            self._run_of(self._scenario()),
+            self._sketched.get(self._key, ()),
+            [one.heights for one in self._together.given(self._place) if one.heights],
+            revealed=self._key in self._revealed,
+            words=Text.joined("; ", self._runner.words) or _RUNNING,
         )
-        button = ""
-        if step.action is not None:
-            fresh = scenario == self._scenario()
-            label = Text("Show me again") if fresh else Text("Show me")
-            button = Text(
-                '<button class="sb-button{quiet}" data-command="{command} show">{label}</button>',
-                quiet=" sb-quiet" * fresh,
-                command=COMMAND,
-                label=label,
-            )
-        return Text(
-            '<section class="sb-lesson" aria-label="Lesson"><div class="sb-crumb"><button '
-            'class="sb-link" data-command="{command} list">All lessons</button><nav class="sb-dots" '
-            'aria-label="Steps">{dots}</nav></div><h2>{title:html}</h2><div aria-live="polite"><h3>'
-            "{step:html}</h3>{text}</div>{button}</section>",
-            command=COMMAND,
-            dots=dots,
-            title=lesson.title,
-            step=step.title,
-            text=to_html(step.text, self._spoken_of(lesson, run)),
-            button=button,
-        )
+
+    def _task_html(self, lesson: Lesson, run: Run | None) -> str:
+        task = lesson.steps[self._step].task
+        if task is None:
+            return ""
+        try:
+            html, done = task_html(task, self._spoken_of(lesson, run))
+        except KeyError:  # the learner's own run has no such method
+            html, done = task_html(task, None)
+        if done:
+            self._together.give(self._place, met=True)
+        return html
 
     def _question_html(self, lesson: Lesson) -> str:
         question = lesson.steps[self._step].question
         if question is None:
             return ""
-        given = self._given.get((self._lesson or 0, self._step))
+        given = self._given.get(self._key)
         verdict, right = ("", False) if given is None else self._verdict(question, given)
-        if question.choices:
-            answers = Text.joined(
-                "",
-                (
-                    Text(
-                        '<button class="sb-choice{value}" aria-pressed="{lower}" '
-                        'data-command="{command} answer '
-                        '{i}">{words}</button>',
-                        value=" sb-chosen" * (given == str(i)),
-                        lower=str(given == str(i)).lower(),
-                        command=COMMAND,
-                        i=i,
-                        words=to_html(choice.say, None).removeprefix("<p>").removesuffix("</p>" + chr(10)),
-                    )
-                    for i, choice in enumerate(question.choices)
-                ),
-            )
-        else:
-            answers = Text(
-                '<form class="sb-number" data-answer="{command}"><input type="text" inputmode="decimal" '
-                'aria-label="Your answer" value="{value:html}" autocomplete="off"><button '
-                'class="sb-button">Check</button></form>',
-                command=COMMAND,
-                value=given or "",
-            )
-        return Text(
-            '<section class="sb-lesson sb-question" aria-label="Question" data-right="{lower}">'
-            '{text}{answers}<div role="status">{verdict}</div></section>',
-            lower=str(right).lower(),
-            text=to_html(question.ask, None),
-            answers=answers,
-            verdict=verdict,
+        if right:
+            self._together.give(self._place, right=True)
+        return question_html(
+            question, given or "", verdict, right=right, of_class=self._together.given(self._place)
         )
 
     def _verdict(self, question: Question, given: str) -> tuple[str, bool]:
@@ -306,32 +345,6 @@ class LearnView(View):
             with self._lock:
                 self._show(self.frame.editor.moved)
 
-    def _below_html(self, lesson: Lesson) -> str:
-        following = (self._lesson or 0) + 1
-        forward = f"{COMMAND} next", Text("Next")
-        if self._step == len(lesson.steps) - 1:
-            more = following < len(lessons())
-            forward = (
-                (f"{COMMAND} open {following}", Text("Next lesson"))
-                if more
-                else (f"{COMMAND} list", Text("Done"))
-            )
-        back = (
-            Text(
-                '<button class="sb-button sb-quiet" data-command="{command} back">Back</button>',
-                command=COMMAND,
-            )
-            if self._step
-            else "<span></span>"
-        )
-        return Text(
-            '<nav class="sb-lesson sb-below" aria-label="Lesson">{back}<button class="sb-button '
-            'sb-quiet" data-command="{next_command}">{label}</button></nav>',
-            back=back,
-            next_command=forward[0],
-            label=forward[1],
-        )
-
 
 @lru_cache(maxsize=64)
 def _scenario(lesson: int, step: int) -> Scenario:
@@ -359,30 +372,6 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
         except (AttributeError, IndexError, TypeError):
             break
     return []
-
-
-@cache
-def _list_html() -> str:
-    entries = Text.joined(
-        "",
-        (
-            Text(
-                '<li><button class="sb-choice" data-command="{command} open {i}"><b>{title:html}</b><br>'
-                "{about:html}</button></li>",
-                command=COMMAND,
-                i=i,
-                title=lesson.title,
-                about=lesson.about,
-            )
-            for i, lesson in enumerate(lessons())
-        ),
-    )
-    return Text(
-        '<section class="sb-lesson" aria-label="Lessons"><h2>Lessons</h2><p>Each takes five '
-        "minutes and sets the page up as it goes. Your own scenario comes back with Undo.</p><ol>"
-        "{entries}</ol></section>",
-        entries=entries,
-    )
 
 
 VIEW = LearnView
