@@ -195,12 +195,6 @@ def test_people_get_a_line_a_preset(capsys):
         assert any(line.startswith(f"{name} ") for line in lines)
 
 
-def test_the_schema_file_is_up_to_date(capsys):
-    assert main(["presets", "--json"]) == 0
-    file = Path(json.loads(capsys.readouterr().out)["schema_file"])
-    assert file.read_text("utf-8") == schema_text(), "write it anew: python -m navcore.scenario.schema_file"
-
-
 def test_the_schema_knows_the_fields_and_their_ranges():
     schema = json.loads(schema_text())
     assert set(schema["properties"]) >= {

@@ -39,6 +39,11 @@ METHODS: dict[str, dict[str, Any]] = {
     "optimal": {"network": {"id": "optimal"}},
     "whole": {"network": COMPLEMENTARY, "azimuth": {"id": "unity2", "zeta": 0.5}},
     "gyrocompass": {"network": COMPASS, "gyrocompass": {"sigma": 0.002, "xi": 0.7}},
+    "output corrected": {
+        "network": COMPLEMENTARY,
+        "policy": {"id": "variation"},
+        "switching": {"id": "bridge", "output": "corrected"},
+    },
     **{
         f"{policy} and {switching}": {
             "network": COMPASS if policy in ("schedule", "mobility") else {"id": "unity2", "zeta": 0.5},

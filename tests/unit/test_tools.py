@@ -15,7 +15,9 @@ from tests.browser.windows.conftest import LOCALES, RUNS
 from tools import chromium, fonts
 from tools.mutation.equivalent import is_equivalent, listed
 from tools.mutation.mutants import changed, mutants_of
+from tools.mutation.planted import Planted, planted
 from tools.mutation.results import ROOT, sample
+from tools.mutation.rooms import ROOMS
 from tools.supply import UNREACHABLE, VULNERABLE, judged
 
 # ---------------------------------------------------------------- where a Chromium is looked for
@@ -154,6 +156,27 @@ def test_a_change_is_one_place() -> None:
     assert len(found) == 8
     for old, new in (("+", "-"), ("2.0", "2.2"), ("-", "+"), ("and", "or"), ("min", "max")):
         assert source.strip().replace(old, new) in found
+
+
+def test_a_kept_value_a_refusal_and_a_doubt_are_changes_too(tmp_path: Path) -> None:
+    source = "def f(s, a):\n    if not a:\n        return 0.5\n    s.kept = s.met[1] = True\n    s.met &= a\n"
+    path = tmp_path / "source.py"
+    path.write_text(source)
+    found = {changed(source, one.place) for one in mutants_of(path, tmp_path)}
+    for old, new in (
+        ("if not a:", "if False:"),
+        ("not a", "not not a"),
+        ("s.kept = s.met[1] = True", "pass"),
+        ("s.met &= a", "pass"),
+    ):
+        assert source.strip().replace(old, new) in found
+
+
+@pytest.mark.parametrize("change", planted(), ids=lambda change: change.what)
+def test_what_is_planted_stands_once_in_the_code_as_it_is(change: Planted) -> None:
+    source = (ROOT / change.file).read_text("utf-8")
+    ast.parse(change.applied(source))
+    assert change.applied(source) != source and change.room in ROOMS
 
 
 @pytest.mark.parametrize("entry", listed(), ids=lambda entry: f"{entry['file']}: {entry['what']}")

@@ -6,6 +6,7 @@ fixes, so that those made are a random sample at any time, and a larger sample h
 of `make test`: a change takes 5 to 200 s of CPU time.
 
     python -m tools.mutation --sample 60 --seed 1 analysis law
+    python -m tools.mutation --planted     # those of `planted.toml`, which survived once
 """
 
 import os
@@ -32,7 +33,8 @@ import scipy.signal  # noqa: E402, F401
 
 from tools.mutation.child import Recorder, in_fork, run_tests  # noqa: E402
 from tools.mutation.kernels import Closures  # noqa: E402
-from tools.mutation.mutants import Mutant, changed  # noqa: E402
+from tools.mutation.mutants import Mutant  # noqa: E402
+from tools.mutation.planted import planted  # noqa: E402
 from tools.mutation.results import ROOT, Kept, key, sample, tell_scores  # noqa: E402
 from tools.mutation.rooms import INTERPRETED, LEFT_OUT, ROOMS  # noqa: E402
 
@@ -56,12 +58,18 @@ def main() -> None:
     parser.add_argument("--interpreted", action="store_true", help="compile no changed kernel (quick, lower)")
     parser.add_argument("--again", action="store_true", help="make those again that survived")
     parser.add_argument("--score", action="store_true", help="make none; tell the score of those made")
+    parser.add_argument("--planted", action="store_true", help="make those of `planted.toml`; draw none")
     given = parser.parse_args()
     end = time.monotonic() + 60.0 * given.minutes
     kept = Kept(given.folder)
-    samples = {room: sample(room, given.sample, given.seed) for room in given.rooms}
+    samples: dict[str, list[Mutant]] = {
+        room: [one for one in planted() if one.room == room]
+        if given.planted
+        else sample(room, given.sample, given.seed)
+        for room in given.rooms
+    }
     for room, drawn in samples.items():
-        if not given.score:
+        if drawn and not given.score:
             with tempfile.TemporaryDirectory() as folder:
                 _Room(room, Path(folder) / "tree", kept, not given.interpreted).run(drawn, given.again, end)
     tell_scores(samples, kept)
@@ -76,7 +84,7 @@ class _Room:
         shutil.copytree(ROOT, tree, symlinks=True, ignore=ignored)
         first, others = ([f for word in words for f in _test_files(tree, word)] for words in ROOMS[room])
         self.tiers = (first, [file for file in dict.fromkeys(others) if file not in first])
-        self.interpreted = [f for word in INTERPRETED[room] for f in _test_files(tree, word)]
+        self.interpreted = [f for word in INTERPRETED.get(room, ()) for f in _test_files(tree, word)]
         self.digest, self.closures = self._kernels()
         everything = [*first, *others]
         in_fork(lambda out: self._tests(everything, None, False, collect_only=True), 300.0)
@@ -114,7 +122,7 @@ class _Room:
         before = path.read_text("utf-8")
         fate, by = "survived", ""
         try:
-            path.write_text(changed(before, mutant.place), "utf-8")
+            path.write_text(mutant.applied(before), "utf-8")
             stages = [(files, False) for files in self.tiers]
             if self._kernels()[1] != self.closures:
                 stages = [(self.interpreted, True), *(stages if self.compiles else [])]
