@@ -15,7 +15,7 @@ from tests.browser.cases import first_of
 from tests.browser.conftest import Another
 from tests.browser.driver import Bench
 
-SECTION = ".sb-lesson:not(.sb-question):not(.sb-below)"
+SECTION = ".sb-lesson:not(.sb-question):not(.sb-asks):not(.sb-below)"
 # Numbers of the text as they are shown, by their name.
 _LIVE = f"""() => [...document.querySelectorAll('{SECTION} .sb-live')]
   .map(e => [e.dataset.name, e.textContent])"""

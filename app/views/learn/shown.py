@@ -81,7 +81,7 @@ def _hint() -> str:
 
 def _box(first: str, below: str, *, right: bool) -> str:
     return Text(
-        '<section class="sb-lesson sb-question sb-predicts" aria-label="Sketch" data-right="{right}">{first}'
+        '<section class="sb-lesson sb-asks sb-predicts" aria-label="Sketch" data-right="{right}">{first}'
         '<div role="status">{below}</div></section>',
         right=str(right).lower(),
         first=first,
@@ -188,7 +188,7 @@ def task_html(task: Task, run: Run | None) -> tuple[str, bool]:
     done = all(found)
     why = Text('<div class="sb-right">{why}</div>', why=to_html(task.why, run)) if done else ""
     html = Text(
-        '<section class="sb-lesson sb-question sb-task" aria-label="Task" data-right="{right}">{ask}<ul>'
+        '<section class="sb-lesson sb-asks sb-task" aria-label="Task" data-right="{right}">{ask}<ul>'
         '{items}</ul><div role="status">{why}</div></section>',
         right=str(done).lower(),
         ask=to_html(task.ask, None),
@@ -232,7 +232,7 @@ def class_html(room: Classroom, *, leads: bool, given: Sequence[Given], lesson: 
 
 def _class_box(words: str, below: str) -> str:
     return Text(
-        '<section class="sb-lesson sb-class" aria-label="Class"><p role="status">{words}</p>'
+        '<section class="sb-lesson sb-asks sb-class" aria-label="Class"><p role="status">{words}</p>'
         "{below}</section>",
         words=words,
         below=below,
