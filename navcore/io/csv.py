@@ -40,7 +40,7 @@ from navcore.io.decimal_signs import signs_of, signs_of_map
 from navcore.io.dialects import dialect_words, instance_place, instance_words
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
-from navcore.io.known_files import DATAFLASH
+from navcore.io.known_files import known_text
 from navcore.io.mapped_rows import mapped_layout, skip_bad
 from navcore.io.rows import Rows, split_line
 from navcore.io.series import LeftOut, Recording
@@ -54,7 +54,7 @@ from navcore.io.written_units import without_brackets
 
 def recognises(candidate: Candidate) -> bool:
     """Whether a header names a known column, or the lines look like a table of numbers."""
-    if DATAFLASH.match(candidate.text):
+    if known_text(candidate.text) is not None:
         return False
     head = head_of_text(candidate.text)
     separator, header_line, header = layout_of(head)

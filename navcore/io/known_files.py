@@ -125,6 +125,29 @@ KNOWN = (
     Known(Text("a picture"), Text("ask for the numbers as CSV"), (b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8")),
     Known(Text("a UBX recording of a u-blox receiver"), _AS_NMEA, (b"\xb5\x62",)),
     Known(Text("an SBF recording of a Septentrio receiver"), _AS_NMEA, (b"$@",)),
+    Known(
+        Text("a binary recording of a NovAtel receiver"),
+        _AS_NMEA,
+        (b"\xaa\x44\x12", b"\xaa\x44\x13", b"\xaa\x44\x14"),
+    ),
+    Known(Text("an ADCP's or DVL's recording (RDI PD0)"), _EXPORT, (b"\x7f\x7f",)),
+    Known(
+        Text("a recording of a Kongsberg echo sounder (.kmall)"),
+        Text("export its positions and attitude as CSV or NMEA 0183"),
+        tuple(b"#" + name for name in (b"IIP", b"IOP", b"SPO", b"SKM", b"SVP", b"SDE", b"MRZ", b"FCF")),
+        4,
+    ),
+    Known(
+        Text("a recording of a Simrad echo sounder (.raw)"),
+        Text("export its NMEA 0183 sentences"),
+        (b"XML0", b"CON0"),
+        4,
+    ),
+    Known(
+        Text("network packets (pcap)"),
+        Text("export the payload of the packets as text"),
+        (b"\xd4\xc3\xb2\xa1", b"\xa1\xb2\xc3\xd4", b"\x4d\x3c\xb2\xa1", b"\x0a\x0d\x0d\x0a"),
+    ),
     Known(Text("a FIT activity"), Text("convert it to GPX or CSV"), (b".FIT",), 8),
     Known(
         Text("a Matroska or MP4 video"), Text("give the log that was recorded beside it"), (b"\x1aE\xdf\xa3",)
@@ -180,6 +203,20 @@ TEXTS = (
         Text("an ArduPilot log (DataFlash, as text)"),
         Text("convert it: mavlogdump.py --format csv --types GPS log.log"),
         DATAFLASH,
+    ),
+    KnownText(
+        "NMEA 2000",
+        Text("convert it to NMEA 0183 or CSV"),
+        re.compile(
+            r"\(\d{9,10}\.\d{3,6}\) \w{1,16} [0-9A-F]{8}#|"
+            r"\d\d:\d\d:\d\d\.\d{3} [RT] [0-9A-F]{8} |"
+            r"\d{4}-\d\d-\d\d[T-]\d\d:\d\d:\d\d\.\d{3}Z?,\d,\d{5,6},\d{1,3},\d{1,3},\d{1,3},[0-9a-fA-F]{2},"
+        ),
+    ),
+    KnownText(
+        Text("an RTF document"),
+        Text("save it as plain text (UTF-8)"),
+        re.compile(r"\{\\rtf\d"),
     ),
     KnownText(
         Text("a log of NovAtel messages"),
@@ -242,9 +279,14 @@ def _refuse_spreadsheet(path: Path, field: str) -> None:
         raise _refusal(path, field, Text("an Office document"), Text("save its table as CSV (UTF-8)"), [])
 
 
+def known_text(text: str) -> KnownText | None:
+    """Kind of a text that no format reads; None for all others."""
+    return next((one for one in TEXTS if one.pattern.match(text[:4096].lstrip())), None)
+
+
 def refuse_known_text(name: str, text: str) -> None:
     """Refuse a text of a known kind that no format reads; raises `InputError`."""
-    found = next((one for one in TEXTS if one.pattern.match(text[:4096].lstrip())), None)
+    found = known_text(text)
     if found is not None:
         allowed = Text("is {name}: {instead}", name=found.name, instead=found.instead)
         raise InputError(Fault(name, "", None, allowed))

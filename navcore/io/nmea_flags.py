@@ -15,8 +15,23 @@ DEAD_RECKONED, MANUAL, SIMULATED = "estimated (dead-reckoned)", "typed in (manua
 REDUCED = "of reduced quality"
 NO_SATELLITES = "without satellites"
 GYRO_ALONE = "of the gyro alone, without satellites"
+OTHER_DATUM = "of a datum other than WGS 84"
+CAUTION, UNSAFE = "to be used with caution", "unsafe for navigation"
 UNKNOWN = "flagged by a letter that is not known"
-_MEANINGS = ("", REDUCED, NO_SATELLITES, GYRO_ALONE, UNKNOWN, DEAD_RECKONED, MANUAL, SIMULATED, INVALID)
+_MEANINGS = (
+    "",
+    REDUCED,
+    NO_SATELLITES,
+    GYRO_ALONE,
+    CAUTION,
+    OTHER_DATUM,
+    UNSAFE,
+    UNKNOWN,
+    DEAD_RECKONED,
+    MANUAL,
+    SIMULATED,
+    INVALID,
+)
 """Of several flags of one reading the last in this order counts."""
 
 MODES = {letter: "" for letter in ("", *"ADFPR")} | {
@@ -36,6 +51,10 @@ QUALITIES = {"0": INVALID, "": INVALID} | dict.fromkeys("123459", "") | {
 }  # fmt: skip
 """Quality of GGA: none, autonomous, differential, precise, RTK fixed and float, estimated, manual,
 simulator; 9 is a fix with corrections of a satellite, by Novatel."""
+NAVIGATION = {"": "", "S": "", "V": "", "C": CAUTION, "U": UNSAFE}
+"""Navigational status of RMC and GNS since NMEA 4.1; V says that the receiver gives none."""
+DATUMS = {"W84": "", "P90": ""}
+"""Datum of DTM; that of GLONASS agrees with WGS 84 within centimetres."""
 HEADING_MODES = {"A": "", "E": DEAD_RECKONED, "M": MANUAL, "S": SIMULATED, "V": INVALID}
 """Mode of THS."""
 SEAPATH = {"0": "", "1": REDUCED, "2": INVALID}
@@ -83,11 +102,14 @@ class Flag(NamedTuple):
 FLAGS = (
     Flag("RMC", 1, ("position", "velocity"), STATUS, INVALID),
     Flag("RMC", 11, ("position", "velocity"), MODES),
+    Flag("RMC", 12, ("position", "velocity"), NAVIGATION),
     Flag("GLL", 5, ("position",), STATUS, INVALID),
     Flag("GLL", 6, ("position",), MODES),
     Flag("GGA", 5, ("position",), QUALITIES),
     Flag("GNS", 5, ("position",), MODES),
+    Flag("GNS", 12, ("position",), NAVIGATION),
     Flag("VTG", 8, ("velocity",), MODES),
+    Flag("DTM", 0, ("position",), DATUMS, OTHER_DATUM),
     Flag("THS", 1, ("heading",), HEADING_MODES),
     Flag("VBW", 2, ("water",), LOG_STATUS, INVALID),
     Flag("VBW", 5, ("ground",), LOG_STATUS, INVALID),
@@ -111,7 +133,7 @@ def meaning(flag: Flag, field: str) -> str:
         except ValueError:
             return flag.otherwise
         return INVALID if bits & _HEADING_FAILS else REDUCED if bits & _SENSOR_FAILS else ""
-    if flag.sentence != "GNS":
+    if flag.meanings is not MODES or flag.sentence != "GNS":
         return flag.meanings.get(field, flag.otherwise)
     told = {flag.meanings.get(letter, flag.otherwise) for letter in field} - {INVALID}
     if not told:

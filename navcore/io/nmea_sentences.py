@@ -13,9 +13,9 @@ import numpy as np
 from navcore.foundation.units import DEG
 from navcore.io import nmea_values as value
 from navcore.io.nmea_fields import Fields
-from navcore.io.nmea_flags import INVALID_CODE, flag_of, words_of
+from navcore.io.nmea_flags import INVALID_CODE, Flag, flag_of, words_of
 from navcore.io.nmea_lines import Sentences
-from navcore.io.nmea_makers import MAKERS, Decoded, Decoder
+from navcore.io.nmea_makers import ABOUT_OTHERS, MAKERS, Decoded, Decoder
 
 _KMPH = 1.0 / 3.6
 
@@ -129,9 +129,15 @@ def _vtg(fields: Fields) -> Decoded:
     return {"flags": fields.codes(flag_of("VTG", 8)), "velocity": velocity}
 
 
+def _with_status(fields: Fields, sentence: str, *flags: Flag) -> np.ndarray:
+    """Flags with the navigational status, which only NMEA 4.1 has."""
+    told = (*flags, flag_of(sentence, 12)) if fields.count.max(initial=0) > 12 else flags
+    return fields.codes(*told)
+
+
 def _rmc(fields: Fields) -> Decoded:
     return {
-        "flags": fields.codes(flag_of("RMC", 1), flag_of("RMC", 11)),
+        "flags": _with_status(fields, "RMC", flag_of("RMC", 1), flag_of("RMC", 11)),
         "time_of_day": fields.of(value.time_of_day, 0),
         "day": fields.of(value.day, 8),
         "position": _place(fields, 2),
@@ -163,7 +169,7 @@ def _gll(fields: Fields) -> Decoded:
 
 def _gns(fields: Fields) -> Decoded:
     return {
-        "flags": fields.codes(flag_of("GNS", 5)),
+        "flags": _with_status(fields, "GNS", flag_of("GNS", 5)),
         "time_of_day": fields.of(value.time_of_day, 0),
         "position": _place(fields, 1, _height(fields, 9)),
     }
@@ -191,7 +197,13 @@ def _ths(fields: Fields) -> Decoded:
     return {"flags": fields.codes(flag_of("THS", 1)), "heading": heading}
 
 
+def _dtm(fields: Fields) -> Decoded:
+    """Datum of the positions beside it."""
+    return {"role": np.full(fields.count.size, ABOUT_OTHERS), "flags": fields.codes(flag_of("DTM", 0))}
+
+
 _STANDARD: dict[str, Decoder] = {
+    "DTM": _dtm,
     "GGA": _gga,
     "GLL": _gll,
     "GNS": _gns,

@@ -22,12 +22,17 @@ BODIES = {
     "THS": "HETHS,20.0,A",
     "VBW": "VDVBW,8.0,0.1,A,7.9,0.1,A,,V,,V",
     "PASHR": "PASHR,23580{k}.00,20.0,T,1.0,-1.0,0.1,0.1,0.1,0.2,1,1",
+    "DTM": "GPDTM,W84,,0.0,N,0.0,E,0.0,W84",
     "PSXN,20": "PSXN,20,0,0,0,0",
     "PSAT,HPR": "PSAT,HPR,23580{k}.00,20.0,1.0,-1.0,N",
     "PHOCT": "PHOCT,01,23580{k}.000,T,00,020.000,T,+000.2,T,+00.1,T,+00.1,T,0,0,0,0,0,0,0",
     "PHINF": "PHINF,00000000",
 }
-SPOKEN_OF = {"PSXN,20": "PSXN,23,1.0,-1.0,20.0,0.1", "PHINF": "HEHDT,20.0,T"}
+SPOKEN_OF = {
+    "DTM": "GPGLL," + PLACE,
+    "PSXN,20": "PSXN,23,1.0,-1.0,20.0,0.1",
+    "PHINF": "HEHDT,20.0,T",
+}
 """Sentences whose readings another one flags."""
 LETTERS = sorted({letter for flag in FLAGS for letter in flag.meanings} | {"A", "V", "N", "Q", "4"})
 ROWS = [(flag, letter) for flag in FLAGS for letter in LETTERS]
@@ -35,6 +40,7 @@ ROWS = [(flag, letter) for flag in FLAGS for letter in LETTERS]
 
 def _body(flag: Flag, letter: str, k: int) -> str:
     fields = BODIES[flag.sentence].format(k=k).split(",")
+    fields += [""] * (flag.place + 2 - len(fields))
     fields[flag.place + 1] = letter
     return ",".join(fields)
 

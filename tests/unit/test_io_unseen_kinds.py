@@ -259,3 +259,35 @@ def test_the_nearest_unit_is_named(tmp_path: Path, factor: float, slip: str) -> 
         lambda k: f"{moment(k):%Y-%m-%dT%H:%M:%SZ},{place(k)[0]:.7f},{place(k)[1]:.7f},{8 * factor:.3f},60",
     )  # fmt: skip
     assert slip in said(report)
+
+
+# ---------------------------------------------------------------- files of other kinds
+
+OTHERS = {
+    b"\xaa\x44\x12\x1c\x2a\x00": "NovAtel",
+    b"\x7f\x7f\x02\x02": "RDI PD0",
+    b"\xc8\x00\x00\x00#IIP": ".kmall",
+    b"\xc8\x00\x00\x00XML0": "Simrad",
+    b"\x0a\x0d\x0d\x0a\x1c": "pcap",
+    b"(1715938200.000000) can0 09F80100#11223344\n" * 20: "NMEA 2000",
+    b"09:30:01.123 R 09F80100 11 22 33 44 55 66 77 88\n" * 20: "NMEA 2000",
+    b"2024-05-17T09:30:01.000Z,2,129025,1,255,8,11,22,33,44,55,66,77,88\n" * 20: "NMEA 2000",
+    b'{"context":"vessels.x","updates":[{"timestamp":"2024-05-17T09:30:00Z","values":[]}]}\n' * 20: "JSON",
+    rb"{\rtf1\ansi utc,lat,lon}": "RTF",
+}
+
+
+@pytest.mark.parametrize("content", OTHERS, ids=lambda content: ascii(content[:12]))
+def test_a_file_of_another_kind_is_refused_by_its_name(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "log"
+    path.write_bytes(content + (b"" if content[-1:] in b"\n}" else b"\0" * 200))
+    (fault,) = check_file(path).faults
+    assert f"is {OTHERS[content]}" in str(fault) or OTHERS[content] in str(fault).partition(": ")[2]
+
+
+def test_a_position_that_its_receiver_calls_unsafe_or_of_another_datum_is_told(tmp_path: Path) -> None:
+    lines = [sentence("GPDTM,999,CH95,0.08,N,0.07,E,-47.7,W84")]
+    lines += [sentence(rmc(k)[1:-3] + ",U") for k in range(60)]
+    told = said(logged(tmp_path, [*lines, lines[0]]))
+    assert "60 readings of GPRMC are unsafe for navigation" in told
+    assert "of GPDTM are of a datum other than WGS 84" in told
