@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from navcore.engine.simulation import simulate
     from navcore.engine.verification import Verification, verify
     from navcore.extending.c_law import c_law
+    from navcore.extending.fmu_law import fmu_law
     from navcore.extending.register import register
     from navcore.foundation.errors import Fault, InputError
     from navcore.foundation.version import __version__
@@ -67,6 +68,7 @@ __all__ = [
     "budget",
     "c_law",
     "designs",
+    "fmu_law",
     "from_control",
     "load",
     "metrics",
@@ -99,6 +101,7 @@ _HOME = {
     "parse_network": "networks",
     "presets": "scenario.file",
     "c_law": "extending.c_law",
+    "fmu_law": "extending.fmu_law",
     "register": "extending.register",
     "simulate": "engine.simulation",
 }

@@ -9,13 +9,14 @@ from typing import Any
 
 import navcore
 from navcore.extending.added import ADDED
+from navcore.extending.law_files import law_of_file
 from navcore.extending.plugins import brought, digest_of, load_plugins, load_text
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import place_of
 from navcore.foundation.text import Text
 
 Baggage = tuple[tuple[str, str, str], ...]
-"""Each of a kind ("file", "c" or "import"), a path or the place to import from, and the text or the id."""
+"""Each of a kind ("file", "law" or "import"), a path or the place to import from, and the text or the id."""
 _taken: set[str] = set()
 
 
@@ -30,8 +31,8 @@ def baggage() -> Baggage:
     files = tuple(("file", path, text) for path, text in brought().items())
     others: dict[str, None] = {}
     for one in ADDED:
-        if path := getattr(one.thing, "c_file", ""):
-            files = (*files, ("c", path, one.name))
+        if path := getattr(one.thing, "law_file", ""):
+            files = (*files, ("law", path, one.name))
             continue
         whole = isinstance(one.thing, ModuleType)
         module = one.thing.__name__ if whole else one.thing.__module__
@@ -77,8 +78,8 @@ def unpack(given: Baggage) -> None:
         if kind == "file":
             if faults := load_text(name, text):
                 raise InputError(faults)
-        elif kind == "c":
-            navcore.register(navcore.c_law(name, id=text))
+        elif kind == "law":
+            navcore.register(law_of_file(name, id=text))
         else:
             module, _, attribute = name.partition(":")
             try:

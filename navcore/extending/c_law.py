@@ -117,7 +117,7 @@ def c_law(path: str | Path, id: str = "", help: str = "") -> type[UserLaw]:
     class CLaw(UserLaw):
         """A law in C."""
 
-        c_file: ClassVar[str] = str(file)
+        law_file: ClassVar[str] = str(file)
 
         def start(self, at: Start) -> Step:
             """Not used: the kernels call the law itself."""
@@ -140,7 +140,7 @@ def c_law(path: str | Path, id: str = "", help: str = "") -> type[UserLaw]:
 def _settings_of(path: str, id: str) -> UserLaw:
     known = KINDS.get(id)
     found = known.settings if known is not None else None
-    return found() if getattr(found, "c_file", "") == path else c_law(path, id)()  # pyright: ignore
+    return found() if getattr(found, "law_file", "") == path else c_law(path, id)()  # pyright: ignore
 
 
 def _refused(file: Path, why: str) -> InputError:

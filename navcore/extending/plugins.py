@@ -11,6 +11,7 @@ from types import ModuleType
 
 import navcore
 from navcore.extending.added import ADDED, collected
+from navcore.extending.law_files import LAW_FILES, law_of_file
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 
@@ -59,8 +60,8 @@ def name_plugin(path: str) -> None:
 
 def load_file(path: str | Path) -> tuple[Fault, ...]:
     """Run a file that registers methods; return what is wrong with it."""
-    if Path(path).suffix == ".c":
-        return _load_c(path)
+    if Path(path).suffix in LAW_FILES:
+        return _load_law(path)
     try:
         text = Path(path).read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -68,13 +69,11 @@ def load_file(path: str | Path) -> tuple[Fault, ...]:
     return load_text(str(Path(path).resolve()), text)
 
 
-def _load_c(path: str | Path) -> tuple[Fault, ...]:
-    """Register the law in a C file, under the name of the file."""
-    from navcore.extending.c_law import c_law
-
+def _load_law(path: str | Path) -> tuple[Fault, ...]:
+    """Register the law in a C file or a unit, under the name of the file."""
     with collected() as faults:
         try:
-            navcore.register(c_law(path))
+            navcore.register(law_of_file(path))
         except InputError as error:
             faults += error.faults
     return tuple(faults)
