@@ -26,6 +26,7 @@ from schuler_bench.views.step.figure import step
 from schuler_bench.views.switching.figure import switching_plots
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure as MatplotlibFigure
     from plotly.graph_objects import Figure
 
 Maker = Callable[..., PlotlyFigure]
@@ -56,6 +57,20 @@ OF_RUN: dict[str, Maker] = {
 def run_figure(run: Run, name: str, **options: Any) -> Figure:
     """Make a figure of a run; see `Run.figure`."""
     return _figure_of(OF_RUN, name, Display().placed(run), options)
+
+
+def run_paper_figure(
+    run: Run, name: str, width_mm: float | None, height_mm: float | None, **options: Any
+) -> MatplotlibFigure:
+    """Draw a figure of a run by matplotlib; see `Run.paper_figure`."""
+    from schuler_bench.plots.printed import printed_figure
+
+    return printed_figure(_made(OF_RUN, name, Display().placed(run), options), width_mm, height_mm)
+
+
+def run_latex(run: Run) -> str:
+    """Write the tables of ``schuler run`` as LaTeX."""
+    return Ran(run).latex()
 
 
 def network_figure(network: NetworkParameters, name: str, lat_deg: float, **options: Any) -> Figure:
@@ -90,11 +105,15 @@ def run_tables(run: Run) -> str:
 def _figure_of(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> Figure:
     from plotly.graph_objects import Figure
 
-    if name not in offered:
-        raise InputError(Fault("", "figure", name, Text("must be one of {known}", known=", ".join(offered))))
-    figure = offered[name](subject, **options)
+    figure = _made(offered, name, subject, options)
     size = {"width": WIDTH_PX, "height": round(WIDTH_PX * figure.aspect)}
     return Figure(data=[_in_full(trace) for trace in figure["data"]], layout=figure["layout"] | size)
+
+
+def _made(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> PlotlyFigure:
+    if name not in offered:
+        raise InputError(Fault("", "figure", name, Text("must be one of {known}", known=", ".join(offered))))
+    return offered[name](subject, **options)
 
 
 def _in_full(trace: dict[str, Any]) -> dict[str, Any]:

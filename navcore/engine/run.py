@@ -296,6 +296,51 @@ class Run:
         """
         return drawn("run_figure", self, name, **options)
 
+    def paper_figure(
+        self,
+        name: str = "errors",
+        width_mm: float | None = None,
+        height_mm: float | None = None,
+        **options: Any,
+    ) -> Any:
+        """Draw the same for a paper, by matplotlib, at the size of a journal's column.
+
+        Curves differ in their dashes as well as in their colour. ``figure.savefig("errors.pdf")`` writes it.
+
+        Parameters
+        ----------
+        name : str
+            As of `figure`.
+        width_mm : float, optional
+            Of the picture, 40..400 mm; by default 88, one column of a journal, and 180 where panels stand
+            side by side.
+        height_mm : float, optional
+            Of the picture, mm; by default by the number of its panels.
+        **options
+            As of `figure`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        InputError
+            As `figure`; matplotlib is not installed, or a size is out of its range.
+        """
+        return drawn("run_paper_figure", self, name, width_mm, height_mm, **options)
+
+    def to_latex(self) -> str:
+        r"""Return the tables of ``schuler run`` as LaTeX: loops, RMS, largest and last errors, verdicts.
+
+        Returns
+        -------
+        str
+            A ``tabular`` each; the document needs ``\usepackage{booktabs}``. Every answer of the bench has
+            the same as ``answer.latex()``.
+        """
+        return drawn("run_latex", self)
+
     def to_arrow(self) -> pyarrow.Table:
         """Return the output rows of all methods as a `pyarrow.Table`, columns as of ``--out``, SI."""
         return handed_over("to_arrow", self)

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from navcore.foundation.latex import latex_table
 from navcore.foundation.text import Text
 from navcore.foundation.visible import visible
 
@@ -72,6 +73,11 @@ class Table:
             head=Text.joined("", heads),
             body=Text.joined("", body),
         )
+
+    def latex(self) -> str:
+        """LaTeX of the table, a ``tabular`` with the rules of booktabs."""
+        left = [place == 0 or column.left for place, column in enumerate(self.columns)]
+        return latex_table(self.title, [*self._heads()], [*self._cells()], left)
 
     def _heads(self) -> Iterator[list[str]]:
         if any(column.name for column in self.columns):
@@ -151,6 +157,10 @@ class Answer:
         """HTML of the tables and sentences."""
         parts = [part.html() if isinstance(part, Table) else _sentence(part) for part in self.rows() if part]
         return Text.joined("", [*parts, *map(_sentence, self.assumptions())])
+
+    def latex(self) -> str:
+        """LaTeX of the tables, each a ``tabular`` with the rules of booktabs; without the sentences."""
+        return "\n".join(part.latex() for part in self.rows() if isinstance(part, Table))
 
     def _repr_html_(self) -> str:
         """Tables for a notebook."""
