@@ -40,7 +40,7 @@ def test_what_is_put_aside_lies_a_whole_window_before_the_event(fill: int, kept:
     """An age of 110 calls and a window of 30 need 140 of them."""
     calls: list[Any] = []
     rows = [SimpleNamespace(damped=True, x=np.full((3, 4), 7.0))] * 200
-    law = SimpleNamespace(s=SimpleNamespace(ring_fill=fill))
+    law = SimpleNamespace(s=SimpleNamespace(ring_fill=fill), p=SimpleNamespace(order=4))
     memory = SimpleNamespace(mean=np.zeros(2), x=np.zeros((2, 4)), valid=False)
     namespace = plain(_put_aside).__globals__
     with pytest.MonkeyPatch.context() as patched:
