@@ -62,7 +62,7 @@ class _Unit(NamedTuple):
                 port.set(unit, getattr(given, name))
             unit.doStep(calls[0] * at.step_s, at.step_s)
             calls[0] += 1
-            found = {name: port.get(unit) for name, port in self.outputs.items()}
+            found: dict[str, Any] = {name: port.get(unit) for name, port in self.outputs.items()}
             if "damped" in found:
                 found["damped"] = found["damped"] > 0.5
             return Commands(**found)
@@ -75,7 +75,7 @@ class _Unit(NamedTuple):
         from fmpy.fmi3 import FMU3Slave
 
         kind = FMU3Slave if self.model.fmiVersion.startswith("3") else FMU2Slave
-        unit = kind(
+        unit: Any = kind(
             guid=self.model.guid,
             unzipDirectory=self.folder,
             modelIdentifier=self.model.coSimulation.modelIdentifier,

@@ -33,8 +33,9 @@ class InPython(UserLaw):
 
 if {compiler!r}:
     navcore.register(navcore.c_law({folder!r} + "/c/schuler_law.c", id="in_c"))
+    navcore.register(navcore.fmu_law({folder!r} + "/fmu/schuler_law.fmu", id="in_unit"))
 data = navcore.load("zha-fast").canonical()
-kinds = ["in_python"] + ["in_c"] * bool({compiler!r})
+kinds = ["in_python"] + ["in_c", "in_unit"] * bool({compiler!r})
 methods = [data["method"][2]] + [{{"name": kind, "damping": kind}} for kind in kinds]
 found = {{}}
 for fidelity in ("error_model", "strapdown"):
@@ -130,7 +131,7 @@ def test_a_law_is_given_and_gives_what_an_exported_one_does() -> None:
 
 
 def test_an_exported_law_registered_again_runs_to_the_last_bit(tmp_path: Path) -> None:
-    for target in ("python", "c"):
+    for target in ("python", "c", "fmu"):
         command = ["export", "zha-fast", "--method", "2", "--as", target, "--out", str(tmp_path / target)]
         subprocess.run([sys.executable, "-m", "schuler_bench", *command], check=True, capture_output=True)
     found = python(EXPORTED.format(folder=str(tmp_path), compiler=shutil.which("cc") or ""))

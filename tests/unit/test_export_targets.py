@@ -10,8 +10,10 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree
 
+import fmpy
 import numpy as np
 import pytest
+from fmpy.validation import validate_fmu
 
 from navcore.analysis import analyse
 from navcore.exporting import target_c, target_fmu, target_matlab, target_python, target_table
@@ -138,8 +140,6 @@ def test_the_unit_has_its_sources_and_names_each_variable(tmp_path: Path) -> Non
 @pytest.mark.skipif(not compiler(), reason="no C compiler")
 def test_fmpy_replays_the_unit(tmp_path: Path) -> None:
     """Valid by the standard's schema; outputs are those of the vectors, a step later."""
-    fmpy = pytest.importorskip("fmpy")
-    validate_fmu = pytest.importorskip("fmpy.validation").validate_fmu
     form = law_form(subject(FEW[9]), busy_inputs(600))
     written(tmp_path, target_fmu.files(form, "law", False, target_c.double_bounds(form)))
     path = str(tmp_path / "law.fmu")

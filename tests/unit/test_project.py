@@ -278,7 +278,8 @@ RUN_BY_NAME = {"axe-playwright-python", "basedpyright", "ipykernel", "pytest-tim
 def test_imports_and_requirements_are_the_same_packages(repo_root: Path):
     """Nothing is used that only came along with another package, and nothing is required in vain."""
     project = tomllib.loads((repo_root / "pyproject.toml").read_text("utf-8"))
-    extra = project["project"]["optional-dependencies"]["cluster"]
+    extras = project["project"]["optional-dependencies"]
+    extra = [text for name, texts in extras.items() if name != "benchmarks" for text in texts]
     required = {Requirement(text).name for text in project["project"]["dependencies"]}
     runtime = required | {Requirement(text).name for text in extra}
     testing = {Requirement(text).name for text in project["dependency-groups"]["test"]}
