@@ -29,6 +29,8 @@ Examples
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from navcore.design.budget import Budget, budget
     from navcore.design.designs import designs
     from navcore.design.dominance import Why, why
@@ -37,19 +39,33 @@ if TYPE_CHECKING:
     from navcore.design.pareto import pareto
     from navcore.design.tune import tune
     from navcore.design.tuned import Tuned
+    from navcore.design.worst.result import Worst
     from navcore.engine.measures import metrics
     from navcore.engine.run import MethodRun, Run
     from navcore.engine.simulation import simulate
     from navcore.engine.verification import Verification, verify
+    from navcore.exporting.exported import Exported, Packed
     from navcore.extending.c_law import c_law
     from navcore.extending.fmu_law import fmu_law
     from navcore.extending.register import register
+    from navcore.fitting.imu import FittedImu
+    from navcore.fitting.recorded import FittedLog
     from navcore.foundation.errors import Fault, InputError
     from navcore.foundation.version import __version__
     from navcore.networks import parse_network
     from navcore.networks.from_control import from_control
+    from navcore.questions.report import Report
+    from navcore.questions.run import Ran
     from navcore.scenario.file import load, presets
     from navcore.scenario.model import Scenario
+    from navcore.study.studied import Studied
+
+    export: Callable[..., Exported | Packed]
+    fit: Callable[..., FittedLog | FittedImu]
+    report: Callable[..., Report]
+    run: Callable[..., Ran]
+    run_study: Callable[..., Studied]
+    worst: Callable[..., Worst]
 
 
 __all__ = [
@@ -68,6 +84,8 @@ __all__ = [
     "budget",
     "c_law",
     "designs",
+    "export",
+    "fit",
     "fmu_law",
     "from_control",
     "load",
@@ -76,10 +94,14 @@ __all__ = [
     "parse_network",
     "presets",
     "register",
+    "report",
+    "run",
+    "run_study",
     "simulate",
     "tune",
     "verify",
     "why",
+    "worst",
 ]
 
 _HOME = {

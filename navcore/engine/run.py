@@ -303,25 +303,15 @@ class Run:
         height_mm: float | None = None,
         **options: Any,
     ) -> Any:
-        """Draw the same for a paper, by matplotlib, at the size of a journal's column.
-
-        Curves differ in their dashes as well as in their colour. ``figure.savefig("errors.pdf")`` writes it.
+        """Draw the same for a paper, as a `matplotlib.figure.Figure` with curves that differ in their dashes.
 
         Parameters
         ----------
-        name : str
+        name, **options
             As of `figure`.
-        width_mm : float, optional
-            Of the picture, 40..400 mm; by default 88, one column of a journal, and 180 where panels stand
-            side by side.
-        height_mm : float, optional
-            Of the picture, mm; by default by the number of its panels.
-        **options
-            As of `figure`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
+        width_mm, height_mm : float, optional
+            Of the picture, 40..400 mm; by default 88 wide, one column of a journal, and 180 where panels
+            stand side by side; as high as its panels need.
 
         Raises
         ------
@@ -331,13 +321,9 @@ class Run:
         return drawn("run_paper_figure", self, name, width_mm, height_mm, **options)
 
     def to_latex(self) -> str:
-        r"""Return the tables of ``schuler run`` as LaTeX: loops, RMS, largest and last errors, verdicts.
+        """Return the tables of ``schuler run`` as LaTeX, each a ``tabular`` with the rules of booktabs.
 
-        Returns
-        -------
-        str
-            A ``tabular`` each; the document needs ``\usepackage{booktabs}``. Every answer of the bench has
-            the same as ``answer.latex()``.
+        Every answer of the bench gives its tables so: ``answer.latex()``.
         """
         return drawn("run_latex", self)
 

@@ -37,7 +37,7 @@ def test_each_figure_of_the_page_is_drawn_for_a_paper(run: Run, name: str) -> No
     named = {trace.name for trace in page.data if trace.name and trace.showlegend is not False}
     (legend,) = figure.legends
     assert {text.get_text() for text in legend.get_texts()} == named
-    curves = [line for axes in figure.axes for line in axes.get_lines() if line.get_label()[0] != "_"]
+    curves = [line for axes in figure.axes for line in axes.get_lines() if str(line.get_label())[0] != "_"]
     styles = {line.get_label(): (str(line.get_linestyle()), line._unscaled_dash_pattern) for line in curves}  # pyright: ignore[reportAttributeAccessIssue]
     drawn = [one for one in styles.values() if one[0] != "None"]
     assert len({str(one) for one in drawn}) == len(drawn)
@@ -58,7 +58,7 @@ def test_its_numbers_and_ranges_are_those_of_the_page(run: Run) -> None:
 def test_its_size_is_chosen_and_a_size_that_is_none_is_refused(run: Run) -> None:
     figure = run.paper_figure("step", 120.0, 60.0)
     assert [round(MM * one) for one in figure.get_size_inches()] == [120, 60]
-    with pytest.raises(InputError, match=r"width_mm = 5\.0 must be 40..400 \(mm\)"):
+    with pytest.raises(InputError, match=r"width_mm = 5\.0: must be 40..400 \(mm\)"):
         run.paper_figure("step", 5.0)
     with pytest.raises(InputError, match="must be one of errors"):
         run.paper_figure("nothing")
