@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
 from typing import Any, get_args, get_origin
 
 import numpy as np
@@ -17,7 +16,6 @@ from navcore.analysis.report import network_report
 from navcore.engine.simulation import simulate
 from navcore.foundation.assets import asset_path
 from navcore.foundation.earth import SPHERE, WGS84
-from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import Parameters, allowed_range, element_of, extra_of
 from navcore.foundation.registry import blocks_of
 from navcore.io.formats import Candidate
@@ -91,7 +89,7 @@ def fields_are_told(model: type[Parameters], named_by: str = "") -> None:
 
 def _slider_fits(place: str, info: Any, slider: Any) -> None:
     sliders = slider if isinstance(slider[0], list | tuple) else [slider]
-    ranged = info if len(sliders) == 1 else element_of(info)
+    ranged: Any = info if len(sliders) == 1 else element_of(info)
     for low, high in sliders:
         limited = {">", "<"} <= set(allowed_range(ranged))
         require(low < high and limited, f"{place} has a slider, and no range or one the wrong way round")
@@ -272,16 +270,6 @@ def frequencies_name_fields(motion: MotionParameters) -> None:
         for part in field.split("."):
             place = place[int(part)] if part.isdigit() else getattr(place, part)
         require(0.0 < frequency < math.inf, f"{field} moves at {frequency} Hz")
-
-
-def refused_in_words(make: Callable[[], object], fields: Mapping[str, Any]) -> None:
-    """What is refused names a field of the block and what is allowed."""
-    try:
-        make()
-    except InputError as error:
-        for fault in error.faults:
-            require(fault.allowed and "\n" not in str(fault), f"a fault without words: {fault}")
-            require(fault.field.split(".")[0] in fields, f"a fault names {fault.field}, which is no field")
 
 
 # ---------------------------------------------------------------- import formats

@@ -41,7 +41,7 @@ def pytest_collection_modifyitems(
     session: pytest.Session, config: pytest.Config, items: list[pytest.Item]
 ) -> None:
     """Add a test for each check of each class, behind the tests that pytest has found."""
-    files = config.getoption(_FILES)
+    files: list[str] = config.getoption(_FILES) or []
     if not files and not config.getoption(_METHODS):
         return
     from navcore.extending.added import ADDED
