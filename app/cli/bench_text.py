@@ -31,7 +31,7 @@ _ROWS = {
     "imu_parquet_ns_per_row": ("IMU read from Parquet: a row", "ns", "200"),
     "slider_to_frame_ms_p50": ("slider to last byte of the figures, 24 h, 3 methods: median", "ms", ""),
     "slider_to_frame_ms_p95": ("95th percentile", "ms", "100"),
-    "slider_design_ms_p50": ("the same, budget and floor in front (tab Design): median", "ms", ""),
+    "slider_design_ms_p50": ("the same, budget and floor in front (Design, tab Limits): median", "ms", ""),
     "slider_design_ms_p95": ("95th percentile", "ms", "100"),
     "slider_all_views_ms_p50": ("the same, every view in front and 2 pinned runs: median", "ms", ""),
     "slider_all_views_ms_p95": ("95th percentile", "ms", "100"),

@@ -37,7 +37,7 @@ def short_label(key: str) -> str:
 
 
 def limit_words(key: str, limit: float, label: str = "") -> str:
-    """Limit (SI) of a quantity as the tab Requirements has it, with its own label or another one."""
+    """Limit (SI) of a quantity as Requirements (tab Limits) has it, with its own label or another one."""
     quantity = QUANTITIES[key]
     return Text(
         "{label} {sign} {amount}",
@@ -48,7 +48,7 @@ def limit_words(key: str, limit: float, label: str = "") -> str:
 
 
 def requirement_words(one: Requirement) -> str:
-    """Limit as the tab Requirements has it, with its share and times."""
+    """Limit as Requirements (tab Limits) has it, with its share and times."""
     limit = limit_words(one.quantity, one.limit_si, short_label(one.quantity))
     if isinstance(one.at_most, str):
         words = {"label": short_label(one.quantity), "sign": SIGNS[one.sense], "amount": one.at_most}

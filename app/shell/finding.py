@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from navcore.foundation.text import Text
 from schuler_bench.editing.form import FieldSpec, label_alone
+from schuler_bench.shell.tabs import tab_of
 
 if TYPE_CHECKING:
     from schuler_bench.shell.view import Frame, View
@@ -53,7 +54,7 @@ class Finder:
             yield f"edit-{place}", (Text("Edit {name}", name=method.name), lambda at=place: self._edit(at))
         for view in self._frame.views():
             for spec in view.fields():
-                title = Text("{field} (tab {tab})", field=label_alone(spec), tab=view.title)
+                title = Text("{field} (tab {tab})", field=label_alone(spec), tab=tab_of(type(view)))
                 name = f"field-{re.sub(r'[^a-z0-9]+', '-', spec.name.lower())}"[:_LONGEST]
                 yield name, (title, lambda view=view, spec=spec: self._go(view, spec))
 

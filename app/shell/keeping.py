@@ -51,7 +51,7 @@ class KeepingPanel:
         if self._keeping.unreadable:
             lines.append(self._keeping.unreadable)
             if self._keeping.aside:
-                lines.append(Text("The tab Files offers it for download."))
+                lines.append(Text("Files (menu) offers it for download."))
         self._word.content = word
         self._note.content = notices.note(lines, "warning")
         self._note.visible = bool(lines)

@@ -119,7 +119,7 @@ class Opening:
         session.study_file = name, text
         session.show(None, study=UPLOADED)
         session.on_change()
-        line = Text("Open the tab Study to run it.")
+        line = Text("Open Study (tab Robustness) to run it.")
         notices.tell(self._client, Text("{name} is a study", name=name), [line], "info")
 
     def use_map(self, name: str, data: Mapping[str, Any] | None) -> None:

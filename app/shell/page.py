@@ -30,6 +30,7 @@ from schuler_bench.shell.following import Following
 from schuler_bench.shell.header import HeaderPanel
 from schuler_bench.shell.keeping import KeepingPanel
 from schuler_bench.shell.layout import Columns, Layout, Window, layout_for
+from schuler_bench.shell.left import LeftColumn
 from schuler_bench.shell.opening import Opening
 from schuler_bench.shell.pace import Pace
 from schuler_bench.shell.palette import Palette
@@ -127,12 +128,10 @@ class Page:
         self.header = HeaderPanel(gui, bar, opening, session, focus)
         self._keeping = KeepingPanel(client, bar, session.keeping)
         self._views = [kind(frame) for kind in kinds]
-        group = gui.add_tab_group(order=20)
+        self._left = LeftColumn(gui, self._faults)
         for view in self._views:
             if view.place == "edit":
-                with (tab := group.add_tab(view.title)):
-                    self._faults.place(view)
-                self._faults.call(view.build, tab)
+                self._left.build(view)
             elif view.place == "page":
                 self._faults.call(view.build, nullcontext())
         self.column = Column(gui, [v for v in self._views if v.place in ("upper", "lower")], self._faults)
@@ -181,6 +180,7 @@ class Page:
         self.editor.catch_up()
         self.header.show_scenario()
         self._following.follow(self._in_front)
+        self._left.show(self.session.opened)
         self.palette.show()
 
     def display_changed(self, by: object) -> None:

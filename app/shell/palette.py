@@ -20,6 +20,7 @@ from schuler_bench.shell.finding import Finder
 from schuler_bench.shell.opening import Opening
 from schuler_bench.shell.reports import view_names
 from schuler_bench.shell.reset import Resets
+from schuler_bench.shell.tabs import tabs
 from schuler_bench.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
 from schuler_bench.shell.view import Frame
 
@@ -52,7 +53,8 @@ class Palette:
 
     def _register(self, opening: Opening) -> None:
         session, ask, tell = self._session, self._commands.ask_page, self._if
-        tabs = [kind.title for kind in self._frame.kinds if kind.title and kind.always]
+        kinds = self._frame.kinds
+        names = [*tabs(kinds), *(kind.title for kind in kinds if kind.title and kind.always)]
         commands = [
             Command(UNDO, lambda _: tell(session.undo(), Text("Nothing to undo")), Text("Undo"), ("Ctrl+Z",)),
             Command(
@@ -114,7 +116,7 @@ class Palette:
                     Text("Show {name}", name=name),
                     watcher=True,
                 )
-                for name in tabs
+                for name in dict.fromkeys(names)
             ),
         ]
         for c in commands:

@@ -1,4 +1,4 @@
-"""Chooser of where a search must hold: in the scenario, or at every point of what the tab Study varies."""
+"""Chooser of where a search must hold: in the scenario, or at every point of what Study varies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from navcore.study.model import Study
 
 OVER = Text("over")
-PLACES = {"scenario": Text("this scenario"), "study": Text("every point of the tab Study")}
+PLACES = {"scenario": Text("this scenario"), "study": Text("every point of Study (tab Robustness)")}
 
 
 class PlacesChooser:
@@ -32,8 +32,8 @@ class PlacesChooser:
             OVER,
             tuple(values),
             hint=Text(
-                "Where settings must hold: in this scenario, or at the worst point of what the tab Study "
-                "varies."
+                "Where settings must hold: in this scenario, or at the worst point of what Study "
+                "(tab Robustness) varies."
             ),
         )
         self._box.on_update(if_user(lambda: frame.show(search_over=values[self._box.value])))

@@ -15,6 +15,7 @@ from navcore.engine.run import Run
 from schuler_bench.bridge.controls import id_of
 from schuler_bench.shell.layout import Window, read_state
 from schuler_bench.shell.opening import as_json
+from schuler_bench.shell.tabs import told
 from schuler_bench.shell.view import View
 
 if TYPE_CHECKING:
@@ -98,7 +99,6 @@ def view_names(kinds: Sequence[type[View]]) -> dict[str, str]:
 
 
 def views_element(kinds: Sequence[type[View]]) -> str:
-    """HTML that tells the page's scripts these names, and the groups of the tabs, in their order."""
-    names = escape(json.dumps(view_names(kinds)))
-    groups = {kind.title: kind.group for kind in kinds if kind.place in ("upper", "lower")}
-    return f'<div id="sb-views" hidden data-names="{names}" data-groups="{escape(json.dumps(groups))}"></div>'
+    """HTML that tells the page's scripts these names, and in which tab each view stands, in their order."""
+    names, tabs = escape(json.dumps(view_names(kinds))), escape(json.dumps(told(kinds)))
+    return f'<div id="sb-views" hidden data-names="{names}" data-tabs="{tabs}"></div>'

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 
 Place = Literal["edit", "upper", "lower", "page"]
 """Left tabs with controls; tabs of the upper and of the lower right panel; anywhere, without a tab."""
-Group = Literal["", "network", "run", "decide", "more"]
-"""Tabs of results that stand together behind its name; "more": in a list at the end of their strip."""
+MENU = "menu"
+"""`View.tab` of a view that the menu opens: it has a tab only while it is in front."""
 Tab = AbstractContextManager[Any]
 """Widgets that are made inside it stand in the tab."""
 Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
@@ -123,11 +123,13 @@ class View:
     Attributes
     ----------
     title : str
-        Of its tab; "" for a view without one.
+        Of the view, by which everything opens it; "" for a view without a tab.
     place : Place
         Where it stands.
-    group : Group
-        Of a tab of the right column.
+    tab : str
+        Title of the tab that it shares with others, or `MENU`; "": it has a tab of its own title.
+    mode : str
+        Its name among the modes, or the folds, of that tab (`schuler_bench.shell.tabs`); "": its title.
     look_for : str
         What to look for in it, in one line at the top of a tab of the right column.
     focus : str
@@ -144,7 +146,8 @@ class View:
 
     title: ClassVar[str] = ""
     place: ClassVar[Place] = "page"
-    group: ClassVar[Group] = ""
+    tab: ClassVar[str] = ""
+    mode: ClassVar[str] = ""
     look_for: ClassVar[str] = ""
     focus: ClassVar[str] = ""
     alone: ClassVar[tuple[str, ...]] = ()
@@ -171,6 +174,12 @@ class View:
     def fields(self) -> Sequence[FieldSpec]:
         """Fields that it can show of the session's scenario, which the palette finds."""
         return [control.spec for control in self.controls] if self.title else ()
+
+    @property
+    def in_use(self) -> bool:
+        """Whether the session's scenario sets one of `fields`: then its fold is open."""
+        scenario = self.session.scenario
+        return any(edits.value_at(scenario, spec.path) != spec.default for spec in self.fields())
 
     def reveal(self, spec: FieldSpec) -> None:
         """Show the control of one of `fields`, which it may leave out until it is asked for."""

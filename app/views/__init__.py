@@ -25,6 +25,7 @@ VIEWS: tuple[str, ...] = (
     "schuler_bench.views.sensors",
     "schuler_bench.views.log",
     "schuler_bench.views.run",
+    "schuler_bench.views.motion",
     "schuler_bench.views.files",
     "schuler_bench.views.appearance",
     "schuler_bench.views.learn",

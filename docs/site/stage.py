@@ -23,6 +23,7 @@ _GUIDE = [
         "Start",
         [
             "docs/tutorial",
+            "docs/tabs",
             "docs/scenario",
             "docs/import",
             "docs/networks",

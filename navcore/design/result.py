@@ -195,7 +195,7 @@ class Budget(Answer):
         return name, *(_shown(figures, kind) for kind in budgeted(self.steady))
 
     def figure(self) -> Any:
-        """Draw the bars of the tab Design, for a notebook, as `plotly.graph_objects.Figure`."""
+        """Draw the bars of Design (tab Limits), for a notebook, as `plotly.graph_objects.Figure`."""
         return drawn("budget_bars", self)
 
     @property

@@ -1,9 +1,9 @@
 """By how much each error source contributes to one method's errors.
 
-From the covariance of the error budget where that models the method: every source by its variance, as the
-tab Design shows it. Where no covariance exists (the law looks at the data, a recorded log), the scenario is
-run with one source at a time: the noise of a sensor is the same alone and in company, for it is seeded by
-sensor. Where a policy switches on what it measures, the sources then do not simply add up.
+From the covariance of the error budget where that models the method: every source by its variance, as
+the page shows it (Limits, Design). Where no covariance exists (the law looks at the data, a recorded log),
+the scenario is run with one source at a time: the noise of a sensor is the same alone and in company, for it
+is seeded by sensor. Where a policy switches on what it measures, the sources then do not simply add up.
 """
 
 from collections.abc import Callable

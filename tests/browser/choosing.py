@@ -1,8 +1,16 @@
-"""Tabs, and the chips of the methods above their parameters."""
+"""Tabs and their modes, and the chips of the methods above their parameters."""
 
 from collections.abc import Callable
 
 from playwright.sync_api import Locator, Page
+
+from schuler_bench.shell.tabs import Standing, standings
+from schuler_bench.views import load
+
+
+def standing(name: str) -> Standing | None:
+    """Where the view of this title stands, if there is one."""
+    return next((one for one in standings(load()) if one.title == name), None)
 
 
 class Choosing:
@@ -14,17 +22,56 @@ class Choosing:
     heard: Callable[[], None]
 
     def tab(self, *names: str) -> None:
-        """Bring tabs to the front; wait until the page holds what they show."""
+        """Bring views to the front, each by its tab and its mode or by the menu; wait for what they show."""
         for name in names:
-            title = self.said(name)
-            tab = self.page.get_by_role("tab", name=title, exact=True, include_hidden=True)
-            if tab.get_attribute("aria-selected") == "true":
-                continue
-            if tab.is_visible():
-                tab.click()
-            else:
-                self.page.locator(".sb-more-tabs").select_option(label=title)
-            self.heard()
+            tab = self.tab_of(name)
+            if tab.get_attribute("aria-selected") != "true":
+                self._go(name, tab)
+                self.heard()
+            if (one := standing(name)) is not None and one.fold:
+                head = self.page.locator(f"[data-sb-fold='{name}'] > [aria-expanded]")
+                if head.get_attribute("aria-expanded") == "false":
+                    head.click()
+
+    def tab_of(self, name: str) -> Locator:
+        """viser's tab of a view, by the view's title: of the views of one tab the strip shows one."""
+        one = standing(name)
+        title = one.tab if one is not None and one.fold else name
+        return self.page.get_by_role("tab", include_hidden=True).filter(
+            has=self.page.get_by_text(self.said(title), exact=True)
+        )
+
+    @property
+    def views(self) -> list[str]:
+        """Titles of the views that the page has now, those of the menu last."""
+        there = [one for one in standings(load()) if self.tab_of(one.title).count() > 0]
+        return [one.title for one in sorted(there, key=lambda one: not one.tab)]
+
+    def _go(self, name: str, tab: Locator) -> None:
+        if tab.is_visible():
+            tab.click()
+            return
+        one = standing(name)
+        assert one is not None, f"no view has the title {name!r}"
+        if not one.tab:
+            self.page.get_by_role("button", name=self.said("Menu"), exact=True).click()
+            menu = self.page.locator(".sb-links")
+            menu.get_by_role("button", name=self.said(name), exact=True).click()
+            self.page.locator("html").press("Escape")
+            return
+        whole = self.page.get_by_role("tab", name=self.said(one.tab), exact=True)
+        if whole.get_attribute("aria-selected") != "true":
+            whole.click()
+        mode = self.page.locator(".sb-modes").get_by_role("button", name=self.said(one.mode), exact=True)
+        if mode.get_attribute("aria-pressed") != "true":
+            mode.click()
+
+    def wait_for_front(self, name: str) -> None:
+        """Wait until a view is in front, or the tab of which it is a fold."""
+        one = standing(name)
+        name = one.tab if one is not None and one.fold else name
+        front = "title => [...document.querySelectorAll('[role=tab][aria-selected=true]')]"
+        self.page.wait_for_function(f"{front}.some(tab => tab.textContent === title)", arg=self.said(name))
 
     def chip(self, method: str) -> Locator:
         """The chip of a method, whose press lets the controls edit it."""

@@ -350,15 +350,18 @@ look.rows = () => [...document.querySelectorAll('[role=tablist]')].map(list => {
   return new Set(tops).size;
 });
 
-// Of each strip of results its groups, from left to right: name and tabs.
-look.groups = () => [...document.querySelectorAll('[data-dock-strip]:has([data-sb-group])')].map(strip => {
-  const tabs = [...strip.children].filter(tab => tab.getClientRects().length > 0);
+// Of each panel the names of its tabs that are seen, from left to right; of its chooser of modes those, and the pressed one.
+look.tabs = () => [...document.querySelectorAll('[data-dock-strip]')].map(strip => {
   const left = tab => tab.getBoundingClientRect().left;
-  return tabs.sort((one, other) => left(one) - left(other)).reduce((groups, tab) => {
-    if (tab.dataset.sbGroup || groups.length === 0) groups.push([tab.dataset.sbGroup, []]);
-    groups.at(-1)[1].push(tab.textContent);
-    return groups;
-  }, []);
+  const seen = [...strip.children].filter(tab => tab.getClientRects().length > 0);
+  const name = tab => tab.ariaLabel ?? tab.textContent;
+  const modes = [...strip.parentElement.querySelectorAll(':scope > .sb-modes > button')];
+  return {
+    tabs: seen.sort((one, other) => left(one) - left(other)).map(name),
+    modes: modes.map(mode => mode.textContent),
+    pressed: modes.filter(mode => mode.ariaPressed === 'true').map(mode => mode.textContent),
+    front: seen.filter(tab => tab.ariaSelected === 'true').map(name),
+  };
 });
 
 look.axes = () => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null)

@@ -43,6 +43,7 @@ TABS = [
     ("View", "Misprints", "Requirements"),
     ("Log", "Compare"),
     ("Run", "Spectrum"),
+    ("Motion",),
     ("Files", "Diagram", "Design"),
     ("Tune",),
     ("Sweep",),

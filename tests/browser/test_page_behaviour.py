@@ -286,7 +286,7 @@ def test_a_scenario_file_is_opened(fresh: Bench, session: Session) -> None:
     assert fresh.box("scenario").input_value() == "mine.toml"
     assert session.scenario == load("sun-step")
     # it opens where its block "view" says
-    fresh.page.get_by_role("tab", name="Step", exact=True, selected=True).wait_for()
+    fresh.wait_for_front("Step")
     fresh.upload({"name": "bad.toml", "mimeType": "application/toml", "buffer": b"[run]\nduration_h = -1\n"})
     assert "bad.toml: run.duration_h = -1" in fresh.notice("The file cannot be used")
     assert session.scenario == load("sun-step")

@@ -46,7 +46,7 @@ def test_without_limits_the_budget_is_shown_and_the_way_to_them(designing: Bench
     page.wait_for_function("() => look.bars() > 0")
     page.get_by_text("This scenario has no limits yet").wait_for()
     page.locator(".sb-none").get_by_role("button", name="Requirements").click()
-    page.get_by_role("tab", name="Requirements", exact=True, selected=True).wait_for()
+    designing.wait_for_front("Requirements")
 
 
 @pytest.mark.slow

@@ -172,8 +172,7 @@ def test_a_browser_that_blocks_cookies_brings_the_tabs_of_the_address(another: A
     )
     bench.open(query="?fixedDpr=0.25&start=no&tab=Poles,Sensors")
     for name in ("Poles", "Sensors"):
-        tab = bench.page.get_by_role("tab", name=name, exact=True)
-        bench.wait_until(lambda tab=tab: tab.get_attribute("aria-selected") == "true", 10.0)
+        bench.wait_for_front(name)
 
 
 def test_forced_colours_leave_legends_and_slider_tracks(fresh: Bench) -> None:

@@ -72,7 +72,7 @@ def test_a_card_says_what_counts_and_selects_its_method(moving: Bench) -> None:
     cards.nth(1).click()
     moving.wait_until(lambda: moving.session.selected == 1)
     page.wait_for_selector("#sb-strip .sb-result:nth-child(2) [aria-pressed=true]")
-    page.get_by_role("tab", name="Method", exact=True, selected=True).wait_for()
+    moving.wait_for_front("Method")
 
 
 def test_a_card_says_which_limits_are_met_and_what_has_changed_since_the_pin(moving: Bench) -> None:

@@ -97,40 +97,10 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
     look(1400, "hidden")
 
 
-def test_tabs_stand_in_groups_and_the_rest_in_a_list(sized: Bench) -> None:
-    page, more = sized.page, sized.page.locator(".sb-more-tabs")
-    wide = layout_for(page.viewport_size["width"], page.viewport_size["height"]).two
-    sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
-    run, switching = ["Errors", "Spectrum", "Metrics"], ["Errors", "Spectrum", "Switching", "Metrics"]
-    network = [["Network", ["Frequency", "Poles", "Step", "Diagram"]]]
-    decide = ["Decide", ["Requirements", "Design", "Tune", "Compare", "Sweep", "Study", "Ask"]]
-
-    def groups(tabs: list[str]) -> list[object]:
-        below = [["Run", tabs], decide]
-        return [network, below] if wide else [[*network, *below]]
-
-    # the tab that comes with a scenario comes into its place, and leaves it
-    sized.wait_until(lambda: page.evaluate("look.groups") == groups(switching), 10.0)
-    sized.put(load_preset("sun-step"), origin="sun-step")
-    sized.wait_until(lambda: page.evaluate("look.groups") == groups(run), 10.0)
-    assert more.locator("option").all_inner_texts() == ["More", "Misprints", "Scenario"]
-    named = "() => getComputedStyle(document.querySelector('[data-sb-group=Network]'), '::before').content"
-    if wide:
-        assert "Network" in page.evaluate(named)
-    for title in ("Misprints", "Scenario"):
-        sized.tab(title)  # from the list: as long as it is in front it stands beside the others
-        strip = page.evaluate("look.groups")[0]
-        assert strip[-1][1][-1] == title and more.input_value() == ""
-    page.evaluate("() => schuler.command('tab', 'Misprints')")
-    page.get_by_role("tab", name="Misprints", exact=True, selected=True).wait_for()
-    sized.tab("Frequency")
-    assert page.evaluate("look.groups") == groups(run)
-
-
 def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:
     page = sized.page
     sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
-    page.get_by_role("tab", name="Switching", exact=True).wait_for()
+    sized.tab_of("Switching").wait_for(state="attached")
     assert set(page.evaluate("look.rows")) == {1}
     sized.tab("Design")
     wait_until_it_fits(sized, "Design")
@@ -160,10 +130,9 @@ def middle(located: Locator) -> float:
 
 def test_tools_are_level_with_the_tabs_and_only_the_main_button_is_filled(bench: Bench) -> None:
     bench.reset("sikuliaq-like", "Poles", "Spectrum")
-    page = bench.page
     for tab, tool in (("Poles", bench.button("Place")), ("Spectrum", bench.box("spectrum of"))):
         wait_until_it_fits(bench, tab)
-        assert abs(middle(page.get_by_role("tab", name=tab, exact=True)) - middle(tool)) < 2, tab
+        assert abs(middle(bench.tab_of(tab)) - middle(tool)) < 2, tab
     bench.tab("Metrics")
     wait_until_it_fits(bench, "Metrics", scrolls=True)
     assert bench.box("errors over").bounding_box()["width"] < 420
@@ -173,25 +142,27 @@ def test_tools_are_level_with_the_tabs_and_only_the_main_button_is_filled(bench:
     assert other == "rgb(255, 255, 255)" and main != other
 
 
-def test_tools_do_not_lie_under_the_list_of_further_tabs(moving: Bench) -> None:
+def test_tools_do_not_lie_under_the_chooser_of_modes(moving: Bench) -> None:
     moving.tab("Frequency")
-    more = moving.page.locator(".sb-more-tabs").first
+    modes = moving.page.locator(".sb-modes").first
     for width in (1300, 1240):
         moving.resize((width, 1080))
         wait_until_it_fits(moving, "Frequency")
-        listed, tool = more.bounding_box(), moving.box("optimal H").bounding_box()
-        beside, below = tool["x"] + tool["width"] <= listed["x"], tool["y"] >= listed["y"] + listed["height"]
-        assert beside or below, (width, listed, tool)
+        chooser, tool = modes.bounding_box(), moving.box("optimal H").bounding_box()
+        beside, below = (
+            chooser["x"] + chooser["width"] <= tool["x"],
+            tool["y"] >= chooser["y"] + chooser["height"],
+        )
+        assert beside or below, (width, chooser, tool)
 
 
 def uncovered(bench: Bench) -> int:
     """Number of labels in view on all tabs, the same one on each; none is covered by its "?"."""
     count = 0
-    for tab in bench.page.get_by_role("tab").all():
-        tab.click()
-        bench.heard()
+    for name in bench.views:
+        bench.tab(name)
         labels, covered = bench.page.evaluate("look.covered")
-        assert (covered, bench.page.evaluate("look.torn")) == ([], []), tab.inner_text()
+        assert (covered, bench.page.evaluate("look.torn")) == ([], []), name
         count += labels
     return count
 

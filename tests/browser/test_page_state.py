@@ -143,14 +143,14 @@ def test_commands_are_found_filtered_and_carried_out(fresh: Bench, session: Sess
     assert session.scenario == load("sun-step")
     for tab in ("Metrics", "Sensors"):
         palette(fresh, f"Show {tab}")
-        page.get_by_role("tab", name=tab, exact=True, selected=True).wait_for()
+        fresh.wait_for_front(tab)
     away_from_text(fresh)
     with page.expect_download() as download:
         page.keyboard.press("Control+s")
     assert download.value.suggested_filename == "scenario.toml"
     with page.expect_file_chooser():
         page.keyboard.press("Control+o")
-    page.get_by_role("tab", name="Files", exact=True, selected=True).wait_for()
+    fresh.wait_for_front("Files")
 
 
 def test_the_keys_are_listed_and_escape_closes_the_list(fresh: Bench) -> None:
@@ -286,4 +286,4 @@ def test_the_palette_finds_a_method(moving: Bench) -> None:
     moving.tab("Sensors")
     palette(moving, "Edit classic2")
     moving.wait_until(lambda: moving.session.selected == 1)
-    moving.page.get_by_role("tab", name="Method", exact=True, selected=True).wait_for()
+    moving.wait_for_front("Method")

@@ -43,8 +43,7 @@ def test_a_translated_page_goes_on(another: Any) -> None:
     bench.box("network.xi").fill("0,5")
     bench.wait_until(lambda: bench.session.scenario.method[2].network.xi == 0.5, 10.0)
     bench.settle()
-    page.get_by_role("tab", name="Step", exact=True).click()
-    bench.heard()
+    bench.tab("Step")
     page.evaluate("clearInterval(window.translating)")
     assert bench.faults == []
 

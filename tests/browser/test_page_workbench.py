@@ -143,17 +143,19 @@ def test_margin_of_a_law_over_time_stands_in_the_switching_view(workbench: Bench
 
 
 def test_the_view_comes_with_the_first_policy_and_goes_with_the_last(moving: Bench) -> None:
-    tab = moving.page.get_by_role("tab", name="Switching", exact=True)
-    assert tab.count() == 0
+    tab = moving.tab_of("Switching")
+    mode = moving.page.locator(".sb-modes").get_by_role("button", name="Switching", exact=True)
+    assert tab.count() == mode.count() == 0
     moving.choose_and_run("policy", "threshold")
-    tab.click()
+    mode.click()
     moving.page.get_by_text("wanted state", exact=True).wait_for()
     moving.choose("curve above", "Position error")
     moving.page.wait_for_function("look.hasLabel", arg="position")
     moving.choose_and_run("policy", "constant")
     tab.wait_for(state="detached")
     # another tab has come to the front
-    moving.page.get_by_role("tab", name="Errors", exact=True, selected=True).wait_for()
+    moving.wait_for_front("Errors")
+    assert mode.count() == 0
 
 
 # ------------------------------------------------------------ the whole system

@@ -8,7 +8,7 @@ from navcore.foundation.errors import InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.views.run.route import (
+from schuler_bench.views.motion.route import (
     count_of,
     fields_of,
     list_of,

@@ -81,10 +81,11 @@ def translations(catalog: Catalog) -> dict[str, str]:
 def script(catalog: Catalog, language: str) -> str:
     """The words that scripts need, as a script.
 
-    What they write themselves, what viser's page says, the titles of the tabs, and the names of what the
-    3D view shows.
+    What they write themselves, what viser's page says, the titles of the tabs and of their modes, and the
+    names of what the 3D view shows.
     """
-    wanted = {kind.title for kind in load()} | {text.key for text in script_texts()}
+    tabs = {name for kind in load() for name in (kind.title, kind.mode, kind.tab)}
+    wanted = tabs | {text.key for text in script_texts()}
     said = dict(
         _positional(key, said) for key, said in translations(catalog).items() if key != said and key in wanted
     )

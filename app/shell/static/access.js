@@ -81,7 +81,7 @@
     const view = document.querySelector("canvas[data-engine]");
     if (view !== null) {
       set(view, "role", "img");
-      set(view, "aria-label", "Map in 3D: the true track, the computed tracks and the ship. The tab Metrics has the numbers.");
+      set(view, "aria-label", "Map in 3D: the true track, the computed tracks and the ship. Metrics (tab Errors) has the numbers.");
     }
     if (document.querySelector('h1, [aria-level="1"]') !== null) return;
     const title = [...document.querySelectorAll("div")].find((d) => d.children.length === 0 && d.textContent === "Schuler Bench");

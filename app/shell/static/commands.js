@@ -99,9 +99,8 @@
   // ------------------------------------------------------------ what the server asks the page for
 
   function openTab(name) {
-    const tab = window.schuler.tab(name);
-    window.schuler.open(tab);
-    tab?.focus();
+    const tab = window.schuler.show(name);
+    requestAnimationFrame(() => tab?.focus()); // one of the menu is seen only now (tabs.js)
   }
 
   // A field that the palette found: its tab may have to be shown first, and its control to be made.

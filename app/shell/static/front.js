@@ -22,9 +22,9 @@
   const plain = (name) => name.toLowerCase().replace(/[^\p{L}\p{N}]/gu, "");
   const english = (tab) => window.schuler.english(tab.textContent);
 
-  function tabNamed(name) {
-    const fits = (tab) => [tab.textContent, english(tab)].some((title) => plain(title) === plain(name));
-    return [...document.querySelectorAll('[role="tab"]')].find(fits);
+  function titleNamed(name) {
+    const fits = (title) => [title, window.schuler.say(title)].some((each) => plain(each) === plain(name));
+    return [...window.schuler.titles()].find(fits) ?? name;
   }
 
   // The first run is shown, which some tabs need, and the scenario's own tab has come to the front.
@@ -44,11 +44,13 @@
 
   function bring() {
     if (!opened()) return;
-    const found = wanted.map(tabNamed);
+    const titles = wanted.map(titleNamed);
+    const found = titles.map(window.schuler.tab);
     if (!told && kept.length === 0) {
       const unknown = wanted.filter((_, place) => found[place] === undefined);
       if (unknown.length > 0) window.schuler.command("no-tab", unknown.join("|"));
     }
+    if (!told) titles.forEach(window.schuler.unfold);
     told = true;
     const foremost = window.schuler.foremost(found);
     const behind = foremost.filter((tab) => tab.getAttribute("aria-selected") !== "true");

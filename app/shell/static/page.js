@@ -72,10 +72,9 @@
   function openTab() {
     const wanted = document.getElementById("sb-focus")?.dataset ?? {};
     if (!wanted.scenario || wanted.scenario === opened) return;
-    const tab = window.schuler.tab(wanted.tab);
-    if (tab === undefined) return;
+    if (window.schuler.tab(wanted.tab) === undefined) return;
     opened = document.documentElement.dataset.opened = wanted.scenario;
-    window.schuler.open(tab);
+    window.schuler.show(wanted.tab);
     soon();
   }
 

@@ -1,7 +1,7 @@
 // Gives room by what the page's texts take, in whatever font and size. The plots of a panel fill what the rest of it
 // leaves: the server's heights are a first estimate (app/shell/layout.py). Lines that may fold (`data-sb-folds`) do so where
 // their panel is too small for them. And the tabs of a panel stand in as few rows as they can, their type as large as
-// those rows allow (page.css).
+// those rows allow (page.css); the chooser of modes (tabs.js) beside them, or below where the row has no room for both.
 (() => {
   const SPARE_PX = 6; // so much may stay empty before the plots are drawn anew
   const FAR = 0.06; // off the height that the server took: then it is told, and makes the figure anew
@@ -9,7 +9,7 @@
   const VIEWPORT = ".mantine-ScrollArea-viewport";
   // Type (px), padding (em) and, of the last, letter spacing (em): for fonts as wide as DejaVu Sans.
   const TYPES = [[13, 0.6], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17], [10.5, 0.1, -0.03]];
-  const TABS = [true, false].flatMap((labelled) => TYPES.slice(0, labelled ? -2 : undefined).map((type) => ({ type, labelled })));
+  const READABLE = 4; // of them, beside a chooser of modes
   const FOLDS = "details[data-sb-folds]";
   const waiting = new Set();
   const chosen = new Map(); // id of what folds -> whether the user has opened it
@@ -31,38 +31,35 @@
     if (lines) chosen.set(lines.id, !lines.open);
   }, true);
 
-  // The tools above a plot stand beside the tabs of their panel, where both have room in one row (page.css).
+  // The tools above a plot stand beside the tabs of their panel and the chooser of modes, where all have room in one row; where
+  // the chooser has a row of its own, beside it (page.css).
   const TOOL = ':is([data-sb-kind="select"], [data-sb-kind="number"], [data-sb-kind="other"], [data-sb-kind="mark"], :has(> .mantine-Button-root))';
   function raise(viewport) {
     const strip = viewport.closest("[data-dock-group]")?.querySelector(":scope > [data-dock-strip]");
-    const more = strip?.parentElement.querySelector(":scope > .sb-more-tabs"); // groups.js
-    const area = (more ?? strip)?.nextElementSibling;
+    const stacked = strip?.hasAttribute("data-sb-stacks") ?? false;
+    const chooser = window.schuler.placeModes(strip, stacked);
+    const area = (chooser ?? strip)?.nextElementSibling;
     if (!area) return;
     const tools = [...viewport.querySelectorAll(`[data-sb-holds~="tools"] > ${TOOL}`)];
     const tabs = [...(strip?.children ?? [])];
     const look = viewport.querySelector(".sb-look")?.title;
     if (look) tabs.find((tab) => tab.ariaSelected === "true")?.setAttribute("title", look);
-    const shown = tabs.filter((tab) => tab.offsetWidth > 0); // those of the list behind the row have no place in it
-    if (tools.length < 2 || shown.length === 0 || new Set(shown.map((tab) => tab.offsetTop)).size > 1) return area.removeAttribute("data-sb-up");
+    const shown = tabs.filter((tab) => tab.offsetWidth > 0); // those behind have no place in it
+    const rows = stacked ? 1 : new Set(shown.map((tab) => tab.offsetTop)).size;
+    if (tools.length < 2 || shown.length === 0 || rows > 1) return area.removeAttribute("data-sb-up");
     area.dataset.sbUp = "";
+    const row = stacked ? chooser : strip;
     const start = strip.offsetParent === shown[0].offsetParent ? strip.offsetLeft : 0;
-    const fits = () => {
-      const end = Math.max(...shown.map(({ offsetLeft, offsetWidth }) => offsetLeft + offsetWidth));
-      area.style.setProperty("--sb-tabs-px", `${strip.offsetHeight}px`);
-      area.style.setProperty("--sb-left-px", `${end - start + 10}px`);
-      area.style.setProperty("--sb-right-px", `${(more?.offsetWidth ?? 0) + 8}px`);
-      const boxes = tools.map((tool) => tool.getBoundingClientRect());
-      const rows = boxes.map(({ top }) => Math.round(top));
-      const right = area.getBoundingClientRect().right - (more?.offsetWidth ?? 0);
-      return Math.max(...rows) - Math.min(...rows) <= strip.offsetHeight / 2 &&
-        boxes.every((box) => box.right <= right + 1) && viewport.scrollWidth <= viewport.clientWidth;
-    };
-    if (fits()) return;
-    const labelled = !strip.hasAttribute("data-sb-bare");
-    strip.toggleAttribute("data-sb-bare", true); // the names of groups give way to the tools
-    if (labelled && fits()) return;
-    strip.toggleAttribute("data-sb-bare", !labelled);
-    area.removeAttribute("data-sb-up");
+    const ends = [...(stacked ? chooser.children : shown), ...(stacked || !chooser ? [] : [chooser])];
+    const end = Math.max(...ends.map(({ offsetLeft, offsetWidth }) => offsetLeft + offsetWidth));
+    area.style.setProperty("--sb-tabs-px", `${row.offsetHeight}px`);
+    area.style.setProperty("--sb-left-px", `${end - start + 10}px`);
+    const boxes = tools.map((tool) => tool.getBoundingClientRect());
+    const tops = boxes.map(({ top }) => Math.round(top));
+    const { right } = area.getBoundingClientRect();
+    const fits = Math.max(...tops) - Math.min(...tops) <= row.offsetHeight / 2 &&
+      boxes.every((box) => box.right <= right + 1) && viewport.scrollWidth <= viewport.clientWidth;
+    if (!fits) area.removeAttribute("data-sb-up");
   }
 
   // What is scrolled away goes behind the tabs, which stand over the panel where its tools are beside them (page.css).
@@ -125,15 +122,20 @@
   function fit(strip) {
     if (strip.getClientRects().length === 0) return;
     const tabs = [...strip.children].filter((tab) => tab.getClientRects().length > 0);
-    const rows = ({ type: [type, padding, spacing = 0], labelled }) => {
-      strip.toggleAttribute("data-sb-bare", !labelled); // without the names of groups (groups.js)
+    const rows = ([type, padding, spacing = 0]) => {
       strip.style.setProperty("--sb-type", `${type}px`);
       strip.style.setProperty("--sb-padding", `${padding}em`);
       strip.style.setProperty("letter-spacing", `${spacing}em`);
       return new Set(tabs.map((tab) => tab.offsetTop)).size;
     };
-    const fewest = rows(TABS.at(-1));
-    TABS.find((look) => rows(look) === fewest);
+    const beside = window.schuler.placeModes(strip, false)?.offsetWidth ?? 0;
+    strip.style.paddingRight = beside > 0 ? `${beside + 2 * window.schuler.modesGap}px` : "";
+    const stacks = beside > 0 && !TYPES.slice(0, READABLE).some((type) => rows(type) === 1);
+    if (stacks) strip.style.paddingRight = "";
+    strip.toggleAttribute("data-sb-stacks", stacks);
+    const fewest = rows(TYPES.at(-1));
+    TYPES.find((type) => rows(type) === fewest);
+    window.schuler.placeModes(strip, stacks);
   }
 
   // In the next frame: what changes a size while sizes are told would be told of in vain.
@@ -151,7 +153,7 @@
   // What is observed already stays so.
   window.schuler.changed(() => {
     const strips = [...document.querySelectorAll("[data-dock-strip]")];
-    const now = strips.map((strip) => strip.textContent).join("|");
+    const now = strips.map((strip) => `${strip.textContent}${window.schuler.chooserOf(strip)?.textContent}`).join("|");
     if (now !== titles) {
       titles = now;
       strips.forEach(fit);

@@ -46,9 +46,6 @@
       input.dispatchEvent(new Event("input", { bubbles: true }));
     },
 
-    // The tab with this title, in English.
-    tab: (name) => [...document.querySelectorAll('[role="tab"]')].find((tab) => window.schuler.english(tab.textContent) === name),
-
     // viser's tabs react to a pointer's whole way, or to a key; a click alone does nothing.
     open(tab) {
       if (!tab || tab.getAttribute("aria-selected") === "true") return;

@@ -17,7 +17,7 @@ from schuler_bench.jobs.envelopes import SEEDS
 from schuler_bench.languages.wording import NAMES
 from schuler_bench.session.display import Display
 from schuler_bench.shell import notices
-from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.shell.view import MENU, Frame, Tab, View, if_user
 from schuler_bench.views.appearance.document import FORMATS, Export, Sheet
 
 COLORS, PRESENTATION, LANGUAGE = Text("colours of the page"), Text("presentation size"), Text("language")
@@ -252,6 +252,7 @@ class AppearanceView(View):
 
     title = Text("View")
     place = "edit"
+    tab = MENU
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

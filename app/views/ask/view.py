@@ -13,7 +13,7 @@ from schuler_bench.shell import notices
 from schuler_bench.shell.layout import TOOLS
 from schuler_bench.shell.question_form import QuestionForm
 from schuler_bench.shell.searching import SearchControls, reveal, show_html
-from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
+from schuler_bench.shell.view import MENU, Frame, PictureView, Tab, if_user
 
 QUESTION, ASK, STOP = Text("question"), Text("Ask"), Text("Stop")
 SHOWN, PLAY = Text("shown by a scenario"), Text("Play it")
@@ -27,7 +27,7 @@ class AskView(PictureView[str]):
 
     title = Text("Ask")
     place = "lower"
-    group = "decide"
+    tab = MENU
     look_for = Text("Questions to this scenario; the answer stays until the next one.")
     always = False
 

@@ -42,7 +42,7 @@ class CompareView(PictureView[str]):
 
     title = Text("Compare")
     place = "lower"
-    group = "decide"
+    tab = Text("Errors")
     look_for = Text("Pinned runs beside the present one: a heading sorts, B flips.")
 
     def __init__(self, frame: Frame) -> None:
@@ -180,7 +180,7 @@ class CompareView(PictureView[str]):
         except InputError:
             lines = [
                 Text(
-                    "There are {most_pins} pins, which is the most. Remove one in the tab Compare.",
+                    "There are {most_pins} pins, which is the most. Remove one in Compare (tab Errors).",
                     most_pins=MOST_PINS,
                 )
             ]

@@ -48,7 +48,7 @@ class DesignView(PlotlyView):
 
     title = Text("Design")
     place = "lower"
-    group = "decide"
+    tab = Text("Limits")
     look_for = Text(
         "Which methods meet the limits, and with what probability; which source the error comes from."
     )
@@ -72,9 +72,9 @@ class DesignView(PlotlyView):
             tuple(CHOICES.values()),
             initial_value=CHOICES[self.session.display.budget],
             hint=Text(
-                "Methods that meet the limits of the tab Requirements, or which source each method's error "
-                "is made of. Dashed: the floor, the least error that any causal linear damping can reach "
-                "with these sensors and this log; it does not bound methods that do not use the log."
+                "Methods that meet the limits of Requirements (tab Limits), or which source each method's "
+                "error is made of. Dashed: the floor, the least error that any causal linear damping can "
+                "reach with these sensors and this log; it does not bound methods that do not use the log."
             ),
         )
         words = {word: key for key, word in CHOICES.items()}

@@ -23,7 +23,7 @@ class DiagramView(PictureView[str]):
 
     title = Text("Diagram")
     place = "upper"
-    group = "network"
+    tab = Text("Frequency")
     look_for = Text(
         "Where the log enters and what the network does with it. A click on a block opens its tab."
     )

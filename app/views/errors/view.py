@@ -151,7 +151,8 @@ class ErrorsView(PictureView[ErrorCurves]):
 
     title = Text("Errors")
     place = "lower"
-    group = "run"
+    tab = Text("Errors")
+    mode = Text("Time")
     look_for = Text(
         "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind. "
         "A click with Shift sets a second cursor: then the plots tell differences."

@@ -6,7 +6,7 @@ from schuler_bench.session.shown import Shown
 from schuler_bench.session.uploads import LARGEST_FILE, MIB, Upload
 from schuler_bench.shell import notices
 from schuler_bench.shell.opening import METRICS, SCENARIO
-from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.shell.view import MENU, Frame, Tab, View
 from schuler_bench.views.files.columns import Columns
 from schuler_bench.views.files.live import LivePart
 from schuler_bench.views.files.own_ins import OwnIns
@@ -23,6 +23,7 @@ class FilesView(View):
 
     title = Text("Files")
     place = "edit"
+    tab = MENU
     asks = ("damp",)
 
     def __init__(self, frame: Frame) -> None:

@@ -21,7 +21,8 @@ class FrequencyView(PlotlyView):
 
     title = Text("Frequency")
     place = "upper"
-    group = "network"
+    tab = Text("Frequency")
+    mode = Text("Bode")
     look_for = Text(
         "Below 0 dB an error is damped, above it is amplified. Handle: across frequency, up less damping."
     )

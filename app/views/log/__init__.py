@@ -1,1 +1,1 @@
-"""Tab "Log": the reference velocity, its errors, events and outages."""
+"""Fold "Log" of the tab "Setup": the reference velocity, its errors, events and outages."""

@@ -1,4 +1,4 @@
-"""Tab "Log": the reference velocity, its errors, events and outages."""
+"""Fold "Log" of the tab "Setup": the reference velocity, its errors, events and outages."""
 
 from navcore.engine.correcting import corrected, correction_of
 from navcore.fitting.recorded import FittedLog, can_fit, fit_of, with_fitted_log
@@ -39,6 +39,7 @@ class LogView(FieldsView):
 
     title = Text("Log")
     place = "edit"
+    tab = Text("Setup")
     asks = ("correction", "fit")
     places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
 

@@ -178,7 +178,7 @@ class MetricsView(PictureView[tuple[str, str]]):
 
     title = Text("Metrics")
     place = "lower"
-    group = "run"
+    tab = Text("Errors")
     asks = ("run", "why")
     look_for = Text("The best number of each row is marked; below, which error source it comes from.")
 

@@ -8,7 +8,7 @@ from navcore.foundation.text import Text
 from schuler_bench.misprints import MISPRINTS, Comparison, Misprint
 from schuler_bench.plots.plotly_data import enlarged
 from schuler_bench.shell.layout import CHOOSER_PX
-from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.shell.view import MENU, Frame, Tab, View, if_user
 from schuler_bench.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html
 
 _WORDS_PX = {True: 96, False: 186}
@@ -39,7 +39,7 @@ class MisprintsView(View):
 
     title = Text("Misprints")
     place = "upper"
-    group = "more"
+    tab = MENU
     look_for = Text("What a paper prints beside what its text and figures say: look where the curves part.")
 
     def __init__(self, frame: Frame) -> None:

@@ -38,7 +38,6 @@ class PolesView(PlotlyView):
 
     title = Text("Poles")
     place = "upper"
-    group = "network"
     look_for = Text(
         "The farther left a pole, the faster it dies away; the steeper, the more it swings. "
         "Drag the handle to move it."
@@ -99,8 +98,8 @@ class PolesView(PlotlyView):
             _decays(self.session.scenario),
             hint=Text(
                 "A pair is only placed when H(0) = 1 and the slope H'(0) is at most 0, so "
-                "that the 24 h "
-                "mode of the whole system does not grow. The same limit as H'(0) in the tab Requirements."
+                "that the 24 h mode of the whole system does not grow. The same limit as H'(0) in "
+                "Requirements (tab Limits)."
             ),
         )
         self._decays.on_update(if_user(self._limit_slope))

@@ -1,4 +1,4 @@
-"""Button of the tab Requirements that makes the verification report and saves it."""
+"""Button of Requirements (tab Limits) that makes the verification report and saves it."""
 
 from typing import Any
 

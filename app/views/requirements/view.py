@@ -32,7 +32,7 @@ class RequirementsView(PictureView[str]):
 
     title = Text("Requirements")
     place = "lower"
-    group = "decide"
+    tab = Text("Limits")
     look_for = Text("Type limits into the table: it says who meets them, and the plots show them.")
     asks = ("report",)
 

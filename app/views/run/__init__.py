@@ -1,1 +1,1 @@
-"""Tab "Run": duration, site, motion, initial errors, strapdown settings."""
+"""Fold "Run" of the tab "Setup": duration, site, initial errors, seed, strapdown settings."""

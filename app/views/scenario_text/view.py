@@ -3,7 +3,7 @@
 from navcore.foundation.text import Text
 from schuler_bench.session.shown import Shown
 from schuler_bench.session.uploads import with_plain_names
-from schuler_bench.shell.view import PictureView, Tab
+from schuler_bench.shell.view import MENU, PictureView, Tab
 
 
 class ScenarioTextView(PictureView[str]):
@@ -11,7 +11,7 @@ class ScenarioTextView(PictureView[str]):
 
     title = Text("Scenario")
     place = "upper"
-    group = "more"
+    tab = MENU
     look_for = Text("The scenario as a file: what the command line and a colleague need to repeat this run.")
 
     def build(self, tab: Tab) -> None:

@@ -1,1 +1,1 @@
-"""Tab "Sensors": errors of gyros and accelerometers."""
+"""Fold "Sensors" of the tab "Setup": errors of gyros and accelerometers."""

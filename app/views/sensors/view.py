@@ -1,4 +1,4 @@
-"""Tab "Sensors": errors of gyros and accelerometers."""
+"""Fold "Sensors" of the tab "Setup": errors of gyros and accelerometers."""
 
 from pathlib import Path
 
@@ -19,6 +19,7 @@ class SensorsView(FieldsView):
 
     title = Text("Sensors")
     place = "edit"
+    tab = Text("Setup")
     places = {"first": 1.0, "more": 100.0}
 
     def build(self, tab: Tab) -> None:

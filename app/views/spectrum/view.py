@@ -22,7 +22,7 @@ class SpectrumView(PlotlyView):
 
     title = Text("Spectrum")
     place = "lower"
-    group = "run"
+    tab = Text("Errors")
     look_for = Text("Peaks at 84 min (Schuler), 24 h and the Foucault period: damping takes the first away.")
     plots = (title,)
 

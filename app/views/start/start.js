@@ -50,6 +50,15 @@
   const closing = (made) =>
     made.addEventListener("click", (event) => event.target.closest("[data-command]") && setTimeout(() => made.close()));
 
+  // ------------------------------------------------------------ the menu
+
+  // What is chosen in the menu closes it; a view that has nothing to show now is not offered.
+  addEventListener("click", ({ target }) => target.closest?.(".sb-links [data-command]")?.closest("[popover]").hidePopover());
+  addEventListener("beforetoggle", ({ target }) => {
+    for (const entry of target.querySelectorAll?.('.sb-links [data-command^="tab "]') ?? [])
+      entry.hidden = window.schuler.tab(entry.dataset.command.slice(4)) === undefined;
+  }, true);
+
   // ------------------------------------------------------------ galleries
 
   function showGallery(title, tries = 20) {
@@ -101,7 +110,7 @@
     const step = steps[place];
     if (step === undefined) return;
     const { tab } = step.dataset;
-    if (tab !== "") window.schuler.open(window.schuler.tab(tab));
+    if (tab !== "") window.schuler.show(tab);
     const card = element("section", "", { class: "sb-tour", role: "dialog", "aria-label": "Guided tour", tabindex: "-1" });
     const row = element("p", "", { class: "sb-more" });
     row.append(element("span", `Step ${place + 1} of ${steps.length}`, { class: "sb-said" }));

@@ -261,10 +261,14 @@ _MENU = Text(
     'title="All networks: |H| and trade">Networks</button><button data-command="{tour}" '
     'title="The page in six steps">Tour</button><button data-command="tab Learn" '
     'title="Lessons of five minutes">Learn</button><button data-command="{start}" title="The '
-    'card that a new visitor sees">Start</button><hr><button data-command="tab View" '
-    'title="Units, bands, export, language, dark page, size">View</button><button data-command="keys" '
-    'title="What the keys do">Keys</button><button data-viewer title="Of the 3D view itself; again '
-    'to go back">3D settings</button></nav></div>',
+    'card that a new visitor sees">Start</button><hr><button data-command="tab Files" '
+    'title="Recordings of your own, and what can be saved">Files</button><button data-command="tab Scenario" '
+    'title="The scenario as a file">Scenario</button><button data-command="tab Misprints" '
+    'title="What a paper prints beside what its figures say">Misprints</button><button '
+    'data-command="tab Ask" title="Questions to this scenario">Ask</button><hr><button '
+    'data-command="tab View" title="Units, bands, export, language, dark page, size">View</button><button '
+    'data-command="keys" title="What the keys do">Keys</button><button data-viewer '
+    'title="Of the 3D view itself; again to go back">3D settings</button></nav></div>',
     scenarios=SCENARIOS,
     network_cards=NETWORK_CARDS,
     tour=TOUR,

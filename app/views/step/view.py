@@ -14,7 +14,7 @@ class StepView(PlotlyView):
 
     title = Text("Step")
     place = "upper"
-    group = "network"
+    tab = Text("Frequency")
     look_for = Text(
         "How long a step of an error is felt: look for the settling time and the swing to the other side."
     )

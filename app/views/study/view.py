@@ -49,7 +49,7 @@ class StudyView(PlotlyView):
 
     title = Text("Study")
     place = "lower"
-    group = "decide"
+    tab = Text("Robustness")
     look_for = Text("How a method performs over a grid of conditions and many seeds, and where it fails.")
     plots = (title,)
     asks = ("study",)

@@ -25,7 +25,7 @@ class SweepView(PlotlyView):
 
     title = Text("Sweep")
     place = "lower"
-    group = "decide"
+    tab = Text("Robustness")
     look_for = Text("How each method performs at other latitudes, log errors, sensor grades and sea states.")
     plots = (title,)
     asks = ("sweep",)

@@ -41,7 +41,7 @@ class SwitchingView(PictureView[Switching]):
 
     title = Text("Switching")
     place = "lower"
-    group = "run"
+    tab = Text("Errors")
     look_for = Text("When each method damps, and what its measure says; look for jumps of the error above.")
     plots = (title,)
     always = False

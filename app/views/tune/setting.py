@@ -212,7 +212,7 @@ def limits_told(scenario: Scenario, display: Display) -> str:
 
 
 def requirements_told(requirements: Sequence[Requirement]) -> str:
-    """Which limits a search keeps, and which of the tab Requirements it cannot."""
+    """Which limits a search keeps, and which of Requirements (tab Limits) it cannot."""
     kept = [limit_words(one.name, one.limit) for one in own_limits(requirements, ())]
     left = left_to_runs(requirements)
     other = [limit_words(one.quantity, one.limit_si) for one in requirements if one.quantity in left]

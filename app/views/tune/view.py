@@ -27,7 +27,7 @@ class TuneView(PlotlyView):
 
     title = Text("Tune")
     place = "lower"
-    group = "decide"
+    tab = Text("Search")
     look_for = Text("Let the program search the best setting; accept or discard what it proposes.")
     plots = (title,)
     asks = ("tune", "profile", "pareto")

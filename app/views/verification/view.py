@@ -15,8 +15,8 @@ _ORDER = 35.0
 """Place in the top bar: before the buttons that share."""
 _TOLD = Text(
     "Runs the scenario as full nonlinear strapdown, and the linear model on the same noise. The run's own "
-    'curves stay. The tab Errors draws both models and their difference (curves "Verification"), and the tab '
-    "Metrics shows the largest differences."
+    'curves stay. The tab Errors draws both models and their difference (curves "Verification"), and its '
+    "mode Metrics shows the largest differences."
 )
 _WHERE = Text('Tab Errors, curves "Verification": both models and their difference.')
 

@@ -80,7 +80,7 @@ def test_each_door_leads_to_what_it_says(window: Bench) -> None:
     form.locator("select").last.select_option("Teledyne RDI Explorer 1200")
     see(window, form.locator("button")).click()
     window.wait_until(lambda: window.session.scenario.imu.part == "Honeywell HG9900")
-    page.get_by_role("tab", name=window.said("Design"), exact=True, selected=True).wait_for()
+    window.wait_for_front("Design")
     search = window.session.searches.asking["design"]
     window.wait_until(lambda: search.under_way is not None or search.result is not None)
     search.cancel()
@@ -134,7 +134,8 @@ def test_to_verify_is_a_small_button_and_lessons_are_one_press_away(window: Benc
     see(window, window.page.locator("[data-command=verify]"))
     links(window, "Learn")
     read(window, window.page.locator(".sb-lesson h3, [data-command^='lesson open']"))
-    see(window, window.page.get_by_role("tab", name=window.said("Learn"), exact=True, selected=True))
+    window.wait_for_front("Learn")
+    see(window, window.tab_of("Learn"))
 
 
 def test_every_tab_says_what_to_look_for(window: Bench) -> None:
@@ -147,6 +148,6 @@ def test_every_tab_says_what_to_look_for(window: Bench) -> None:
         assert looks.count() == (2 if high else 0), name
         for place in range(looks.count()):
             read(window, looks.nth(place))
-        tab = page.get_by_role("tab", name=window.said(name), exact=True)
+        tab = window.tab_of(name)
         window.wait_until(lambda tab=tab: len(tab.get_attribute("title") or "") > 20)
         speaks(window, tab.get_attribute("title") or "")
