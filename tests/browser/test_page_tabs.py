@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from navcore.scenario.file import load as load_preset
+from navcore.scenario.model import Scenario
 from schuler_bench.shell.layout import layout_for
 from schuler_bench.shell.tabs import standings, tabs
 from schuler_bench.views import load
@@ -90,6 +91,30 @@ def test_the_mode_comes_with_the_scenario_that_opens_in_it(moving: Bench) -> Non
     moving.put(load_preset("sun-step"), origin="sun-step")
     moving.wait_for_front("Step")
     assert strip_of(moving, "Frequency")["pressed"] == ["Step"]
+
+
+def test_the_strip_unfolds_into_the_table_of_all_numbers(moving: Bench) -> None:
+    moving.button("All numbers of the run").click()
+    moving.wait_for_front("Metrics")
+    assert strip_of(moving, "Errors")["pressed"] == ["Metrics"]
+
+
+def test_folds_open_for_what_the_scenario_sets_and_by_a_key(moving: Bench) -> None:
+    page = moving.page
+
+    def state() -> dict[str, str]:
+        heads = page.locator("[data-sb-fold] > [aria-expanded]").all()
+        return {head.inner_text(): head.get_attribute("aria-expanded") or "" for head in heads}
+
+    moving.tab("Setup")
+    moving.wait_until(lambda: set(state().values()) == {"true"}, 10.0)
+    plain = load_preset("sikuliaq-like").canonical() | {"imu": {}, "motion": {"kind": "static"}}
+    moving.put(Scenario.parse(plain), origin="at rest")
+    moving.wait_until(lambda: (state()["Sensors"], state()["Motion"]) == ("false", "false"), 10.0)
+    assert (state()["Log"], state()["Run"]) == ("true", "true")
+    page.locator("[data-sb-fold=Sensors] > [aria-expanded]").press("Enter")
+    moving.wait_until(lambda: state()["Sensors"] == "true", 10.0)
+    assert moving.box("imu.gyro_bias_dph.0").is_visible()
 
 
 def test_what_has_nothing_to_show_is_not_in_the_menu(moving: Bench) -> None:

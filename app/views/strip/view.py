@@ -76,6 +76,13 @@ class StripView(View):
         self.follow_scenario()
 
 
+_UNFOLD = Text(
+    '<button class="sb-unfold" data-command="tab Metrics" '
+    'title="All numbers of the run: Metrics (tab Errors)" aria-label="All numbers of the run">▾</button>'
+)
+"""Behind the cards: the table of which they are the first numbers."""
+
+
 def strip_html(found: Shown | None, selected: int) -> str:
     """HTML of the strip.
 
@@ -86,7 +93,7 @@ def strip_html(found: Shown | None, selected: int) -> str:
     selected : int
         Place of the edited method.
     """
-    cards = "" if found is None else Text.joined("", _cards(found, selected))
+    cards = "" if found is None else Text.joined("", (*_cards(found, selected), _UNFOLD))
     return Text(
         '<div id="sb-strip" role="group" aria-label="Results of the methods">{cards}</div>', cards=cards
     )

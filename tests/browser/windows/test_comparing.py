@@ -277,7 +277,7 @@ def test_meridians_are_labelled_apart(window: Bench) -> None:
 
 def test_notation_is_one(window: Bench) -> None:
     assert "ζ" in label_of("network.zeta")
-    for tab in ("Method", "Sensors", "Log", "Run"):
+    for tab in ("Method", "Sensors", "Log", "Run", "Motion"):
         window.tab(tab)
         texts = "\n".join(window.page.locator("label:visible").all_inner_texts())
         assert not re.search(r"\b(zeta|xi|deg|ug|omega)\b|deg/|sqrt", texts), texts

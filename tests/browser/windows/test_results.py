@@ -183,7 +183,7 @@ def test_a_limit_of_settling_is_one_edge_in_the_pole_map(window: Bench) -> None:
 
 def test_the_legs_come_back_after_another_motion(window: Bench) -> None:
     legs: Any = window.session.scenario.motion
-    window.tab("Run")
+    window.tab("Motion")
     about = window.page.get_by_text(window.said("add behind"))
     read(window, about)
     window.choose_and_run("motion", "static")

@@ -134,7 +134,7 @@ def test_a_lost_server_is_told(visitor: Bench, lost: Callable[[], None]) -> None
 
 @pytest.mark.slow
 def test_an_address_opens_tabs_and_one_view_alone(window: Bench, visitor: Bench) -> None:
-    tabs = ["Sensors", *(["Frequency"] if layout_for(*window.size).two else []), "Spectrum"]
+    tabs = ["Setup", *(["Frequency"] if layout_for(*window.size).two else []), "Spectrum"]
     window.tab(*tabs)
     window.page.evaluate("() => schuler.command('share-view')")
     link = see(window, window.dialog("Share this state").get_by_role("textbox")).input_value()
