@@ -16,7 +16,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
 from schuler_bench.editing import edits
-from schuler_bench.editing.form import FieldSpec
+from schuler_bench.editing.form import NONE, FieldSpec
 from schuler_bench.plots import style, table
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.plots.uplot import UplotFigure
@@ -179,7 +179,11 @@ class View:
     def in_use(self) -> bool:
         """Whether the session's scenario sets one of `fields`: then its fold is open."""
         scenario = self.session.scenario
-        return any(edits.value_at(scenario, spec.path) != spec.default for spec in self.fields())
+        unset = (NONE, None)
+        return any(
+            (value := edits.value_at(scenario, spec.path)) != spec.default and value not in unset
+            for spec in self.fields()
+        )
 
     def reveal(self, spec: FieldSpec) -> None:
         """Show the control of one of `fields`, which it may leave out until it is asked for."""

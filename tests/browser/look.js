@@ -362,7 +362,7 @@ look.tabs = () => [...document.querySelectorAll('[data-dock-strip]')].map(strip 
     pressed: modes.filter(mode => mode.ariaPressed === 'true').map(mode => mode.textContent),
     front: seen.filter(tab => tab.ariaSelected === 'true').map(name),
   };
-});
+}).filter(({tabs}) => tabs.length > 0);
 
 look.axes = () => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null)
   .flatMap(p => Object.entries(p._fullLayout).filter(([k]) => /^[xy]axis/.test(k))

@@ -29,9 +29,10 @@
       const title = titleOf(tab);
       const place = known().findIndex((view) => view.title === title || (view.fold && view.tab === title));
       const { tab: of = title, mode = title } = place < 0 || known()[place].fold ? {} : known()[place];
-      return { tab, title, place, of, mode };
+      const order = of === "" ? place : known().findIndex((view) => view.tab === of);
+      return { tab, title, place, order, of, mode };
     });
-    return found.sort((one, other) => one.place - other.place);
+    return found.sort((one, other) => one.order - other.order || one.place - other.place);
   }
 
   // Of the views of each tab the one that the strip shows.
@@ -55,8 +56,7 @@
       set(one.tab, "data-sb-behind", !seen && "yes");
       set(one.tab, "data-sb-named", name);
       set(one.tab, "aria-label", name);
-      const { place } = found.find(({ of }) => of === one.of && of !== "") ?? one; // that of its tab
-      if (one.tab.style.order !== String(place)) one.tab.style.order = place;
+      if (one.tab.style.order !== String(one.order)) one.tab.style.order = one.order;
     }
     offer(strip, front?.of ? found.filter(({ of }) => of === front.of) : []);
   }
