@@ -48,7 +48,7 @@ class LeftColumn:
         place: AbstractContextManager[Any] = self._tabs[title]
         if title != view.title:
             with place:
-                place = self._gui.add_folder(view.mode or view.title, expand_by_default=False)
+                place = self._gui.add_folder(view.mode or view.title, expand_by_default=True)
             self._folds.append(view)
         with place:
             self._faults.place(view)

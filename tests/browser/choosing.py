@@ -55,15 +55,13 @@ class Choosing:
         assert one is not None, f"no view has the title {name!r}"
         if not one.tab:
             self.page.get_by_role("button", name=self.said("Menu"), exact=True).click()
-            menu = self.page.locator(".sb-links")
-            menu.get_by_role("button", name=self.said(name), exact=True).click()
-            self.page.locator("html").press("Escape")
+            self.page.locator(f".sb-links [data-command='tab {name}']").click()
             return
         whole = self.page.get_by_role("tab", name=self.said(one.tab), exact=True)
         if whole.get_attribute("aria-selected") != "true":
             whole.click()
-        mode = self.page.locator(".sb-modes").get_by_role("button", name=self.said(one.mode), exact=True)
-        if mode.get_attribute("aria-pressed") != "true":
+        mode = self.page.locator(".sb-modes").get_by_role("radio", name=self.said(one.mode), exact=True)
+        if mode.get_attribute("aria-checked") != "true":
             mode.click()
 
     def wait_for_front(self, name: str) -> None:

@@ -108,7 +108,7 @@ look.named = () => [...document.querySelectorAll('[role=slider]')].every(s => s.
 
 look.focus = () => {
   const {outlineStyle, outlineWidth} = getComputedStyle(document.activeElement);
-  return [outlineStyle, parseFloat(outlineWidth) >= 2, document.activeElement.outerHTML.slice(0, 80)];
+  return [outlineStyle, parseFloat(outlineWidth) >= 2, document.activeElement.outerHTML.slice(0, 160)];
 };
 
 look.reached = () => {
@@ -359,7 +359,7 @@ look.tabs = () => [...document.querySelectorAll('[data-dock-strip]')].map(strip 
   return {
     tabs: seen.sort((one, other) => left(one) - left(other)).map(name),
     modes: modes.map(mode => mode.textContent),
-    pressed: modes.filter(mode => mode.ariaPressed === 'true').map(mode => mode.textContent),
+    pressed: modes.filter(mode => mode.ariaChecked === 'true').map(mode => mode.textContent),
     front: seen.filter(tab => tab.ariaSelected === 'true').map(name),
   };
 }).filter(({tabs}) => tabs.length > 0);

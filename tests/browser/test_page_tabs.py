@@ -65,15 +65,15 @@ def test_a_mode_is_chosen_by_mouse_and_keys_and_stays_with_its_tab(moving: Bench
     moving.tab("Frequency")
     strip = strip_of(moving, "Frequency")
     assert (strip["modes"], strip["pressed"]) == (["Bode", "Step", "Diagram"], ["Bode"])
-    modes = page.get_by_role("group", name="Modes of Frequency")
-    modes.get_by_role("button", name="Step", exact=True).click()
+    modes = page.get_by_role("radiogroup", name="Modes of Frequency")
+    modes.get_by_role("radio", name="Step", exact=True).click()
     moving.wait_for_front("Step")
     moving.heard()
     assert moving.page.evaluate("look.front") == ["Method", "Step", "Errors"]
     assert {view for page in moving._pages for view in page._front} == {"Method", "Step", "Errors"}
     page.keyboard.press("ArrowRight")
     moving.wait_for_front("Diagram")
-    assert modes.locator("[aria-pressed=true]").inner_text() == "Diagram"
+    assert modes.locator("[aria-checked=true]").inner_text() == "Diagram"
     # the arrow keys go from tab to tab past the views behind, and back to the mode that was left
     page.get_by_role("tab", name="Frequency", exact=True).press("ArrowRight")
     moving.wait_for_front("Poles")
@@ -123,7 +123,7 @@ def test_what_has_nothing_to_show_is_not_in_the_menu(moving: Bench) -> None:
     links = moving.page.locator("#sb-menu")
     for one in STANDINGS:
         if not one.tab:
-            entry = links.get_by_role("button", name=one.title, exact=True)
+            entry = links.locator(f"[data-command='tab {one.title}']")
             assert entry.is_visible() == (moving.tab_of(one.title).count() > 0), one.title
     links.get_by_role("button", name="Misprints", exact=True).click()
     moving.wait_for_front("Misprints")

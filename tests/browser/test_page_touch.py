@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser
 
+from tests.browser.choosing import standing
 from tests.browser.conftest import Served
 from tests.browser.driver import Bench
 from tests.browser.placing import NEAR, centre, pair, place, pole, ring_at, spot
@@ -35,7 +36,10 @@ def tablet(held: Bench) -> Iterator[Bench]:
 def tap(tablet: Bench, tab: str) -> None:
     """Bring a tab to the front by a finger."""
     found = tablet.tab_of(tab)
-    if not found.is_visible():  # a mode of another tab
+    if not found.is_visible():  # a mode that is not chosen
+        one = standing(tab)
+        assert one is not None
+        tablet.page.get_by_role("tab", name=one.tab, exact=True).tap()
         found = tablet.page.locator(f".sb-modes [data-view='{tab}']")
     found.tap()
     tablet.heard()

@@ -144,7 +144,7 @@ def test_margin_of_a_law_over_time_stands_in_the_switching_view(workbench: Bench
 
 def test_the_view_comes_with_the_first_policy_and_goes_with_the_last(moving: Bench) -> None:
     tab = moving.tab_of("Switching")
-    mode = moving.page.locator(".sb-modes").get_by_role("button", name="Switching", exact=True)
+    mode = moving.page.locator(".sb-modes").get_by_role("radio", name="Switching", exact=True)
     assert tab.count() == mode.count() == 0
     moving.choose_and_run("policy", "threshold")
     mode.click()

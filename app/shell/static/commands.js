@@ -100,7 +100,8 @@
 
   function openTab(name) {
     const tab = window.schuler.show(name);
-    requestAnimationFrame(() => tab?.focus()); // one of the menu is seen only now (tabs.js)
+    tab?.focus();
+    if (document.activeElement !== tab) requestAnimationFrame(() => tab?.focus()); // of the menu: seen only then (tabs.js)
   }
 
   // A field that the palette found: its tab may have to be shown first, and its control to be made.

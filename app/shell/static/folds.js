@@ -1,7 +1,9 @@
 // Folds of the left column: viser's folders, of which those are open that hold something of a newly opened scenario
-// (app/shell/left.py). viser lets a pointer open them; here a key does so, too, and a screen reader hears which are open.
+// (app/shell/left.py). viser forgets which are open when its tab goes behind, and opens them slowly: here they are viser's
+// open folders, and what is closed is out of sight by our style. A key opens them, too, and a screen reader hears it.
 (() => {
-  const OPEN = ".tabler-icon-chevron-up"; // leans on viser's icons, as pinned
+  const HEAD = "[data-sb-fold] > [aria-expanded]";
+  const open = new Map(); // title of a view -> whether its fold is open
   let shown = "0";
 
   const folds = () => JSON.parse(document.getElementById("sb-views")?.dataset.tabs ?? "[]").filter(({ fold }) => fold);
@@ -17,40 +19,53 @@
     return found;
   }
 
-  const isOpen = (head) => head.querySelector(OPEN) !== null;
-
-  function mark() {
-    for (const [title, head] of heads()) {
-      const open = String(isOpen(head));
-      if (head.getAttribute("aria-expanded") === open) continue;
-      head.parentElement.dataset.sbFold = title;
-      head.setAttribute("role", "button");
-      head.setAttribute("tabindex", "0");
-      head.setAttribute("aria-expanded", open);
-    }
-    const wanted = document.getElementById("sb-folds")?.dataset;
-    if (wanted === undefined || wanted.count === shown) return;
-    const all = heads();
-    if (all.size < folds().length) return;
-    shown = wanted.count;
-    const open = JSON.parse(wanted.open);
-    for (const [title, head] of all) if (isOpen(head) !== open.includes(title)) head.click();
+  function set(element, name, value) {
+    if (element.getAttribute(name) !== value) element.setAttribute(name, value);
   }
 
-  addEventListener("keydown", (event) => {
-    const head = event.target instanceof Element && event.target.closest("[data-sb-fold] > [aria-expanded]");
-    if (head !== event.target || !["Enter", " "].includes(event.key)) return;
-    event.preventDefault();
-    head.click();
-  });
+  function show() {
+    const told = document.getElementById("sb-folds")?.dataset;
+    if (told !== undefined && told.count !== shown) {
+      shown = told.count;
+      const used = JSON.parse(told.open);
+      for (const { title } of folds()) open.set(title, used.includes(title));
+    }
+    for (const [title, head] of heads()) {
+      const isOpen = open.get(title) ?? true;
+      set(head.parentElement, "data-sb-fold", title);
+      head.parentElement.toggleAttribute("data-sb-shut", !isOpen);
+      set(head, "role", "button");
+      set(head, "tabindex", "0");
+      set(head, "aria-expanded", String(isOpen));
+    }
+  }
 
-  window.schuler.changed(mark);
+  const headOf = ({ target }) => (target instanceof Element ? target.closest(HEAD) : null);
+
+  function turn(event, head) {
+    event.preventDefault();
+    event.stopPropagation(); // viser's own folder stays open
+    const title = head.parentElement.dataset.sbFold;
+    open.set(title, !open.get(title));
+    show();
+  }
+
+  document.documentElement.addEventListener("click", (event) => {
+    const head = headOf(event);
+    if (head) turn(event, head);
+  }, true);
+  document.documentElement.addEventListener("keydown", (event) => {
+    const head = headOf(event);
+    if (head === event.target && ["Enter", " "].includes(event.key)) turn(event, head);
+  }, true);
+
+  window.schuler.changed(show);
 
   // Open the fold of a view.
   window.schuler.unfold = (title) => {
-    const head = heads().get(title);
-    if (head === undefined) return;
-    if (!isOpen(head)) head.click();
-    requestAnimationFrame(() => head.scrollIntoView({ block: "nearest" })); // its tab may only now be in front
+    if (!folds().some((fold) => fold.title === title)) return;
+    open.set(title, true);
+    show();
+    requestAnimationFrame(() => heads().get(title)?.scrollIntoView({ block: "nearest" })); // its tab may only now be in front
   };
 })();

@@ -74,18 +74,22 @@
     if (key === "") return;
     if (chooser === null) {
       const label = `Modes of ${window.schuler.say(modes[0].of)}`;
-      chooser = window.schuler.element("div", "", { class: "sb-modes", role: "group", "data-modes": key, "aria-label": label });
+      chooser = window.schuler.element("div", "", { class: "sb-modes", role: "radiogroup", "data-modes": key, "aria-label": label });
       for (const { title, mode } of modes) {
-        const button = window.schuler.element("button", mode, { type: "button", "data-view": title });
+        const button = window.schuler.element("button", mode, { type: "button", role: "radio", "data-view": title });
         button.addEventListener("click", () => window.schuler.show(title));
         chooser.append(button);
       }
       strip.after(chooser);
     }
-    for (const [place, button] of [...chooser.children].entries()) set(button, "aria-pressed", String(modes[place].tab.ariaSelected === "true"));
+    for (const [place, button] of [...chooser.children].entries()) {
+      const chosen = modes[place].tab.ariaSelected === "true";
+      set(button, "aria-checked", String(chosen));
+      set(button, "tabindex", chosen ? "0" : "-1");
+    }
   }
 
-  // Left and right move between the modes, as between the tabs; both are reached by the tabulator key, too.
+  // Left and right move between the modes, as between the tabs.
   function step(event, all, at, go) {
     const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     if (by === undefined || event.ctrlKey || event.altKey || event.metaKey) return;

@@ -263,7 +263,7 @@ _MENU = Text(
     'title="Lessons of five minutes">Learn</button><button data-command="{start}" title="The '
     'card that a new visitor sees">Start</button><hr><button data-command="tab Files" '
     'title="Recordings of your own, and what can be saved">Files</button><button data-command="tab Scenario" '
-    'title="The scenario as a file">Scenario</button><button data-command="tab Misprints" '
+    'title="The scenario as a file">Scenario file</button><button data-command="tab Misprints" '
     'title="What a paper prints beside what its figures say">Misprints</button><button '
     'data-command="tab Ask" title="Questions to this scenario">Ask</button><hr><button '
     'data-command="tab View" title="Units, bands, export, language, dark page, size">View</button><button '
