@@ -8,7 +8,8 @@ from collections.abc import Callable
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
-from schuler_bench.views.learn.lessons import Lesson, Question, Step, lessons, right_choice
+from schuler_bench.views.learn.asked import Question, right_choice
+from schuler_bench.views.learn.lessons import Lesson, Step, lessons
 from schuler_bench.views.learn.names import named
 
 _NAME = re.compile(r"\{\{\s*([^}]+?)\s*\}\}")
