@@ -80,6 +80,21 @@ def test_octave_runs_the_function(tmp_path: Path, part: int) -> None:
     assert "1500 steps: within the bounds" in done.stdout, done.stderr
 
 
+@pytest.mark.nightly
+@pytest.mark.timeout(3000)
+@pytest.mark.skipif(not shutil.which("octave-cli"), reason="no Octave")
+@pytest.mark.parametrize("method", ["1", "2"])
+def test_octave_runs_a_day_of_vectors(tmp_path: Path, method: str) -> None:
+    """24 h of a preset, a call a second, within 1e-12 of the peak of each output."""
+    form = form_of(subject_of(load("zha-fast"), method, hours=24.0))
+    bounds = target_c.double_bounds(form)
+    assert max(bounds) <= 1e-12 and len(form.given) == 86401
+    written(tmp_path, target_matlab.files(form, "law", False, bounds))
+    command = ["octave-cli", "--no-init-file", "--eval", "replay"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "86401 steps: within the bounds" in done.stdout, done.stderr
+
+
 @pytest.mark.parametrize("kind", OTHER)
 def test_filter_and_averaging_are_exported_as_they_run(tmp_path: Path, kind: str) -> None:
     """In C where there is a compiler, and in Python."""
