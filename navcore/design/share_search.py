@@ -3,7 +3,7 @@
 A share over seeds cannot be differentiated, and its largest value is not where the covariance is least. The
 covariance along the run chooses among many settings spread over the ranges; a few generations around the best
 ones are then judged by runs, each on the same seeds, at a coarser step than the scenario's. None of these
-seeds is among those that judge what was found.
+seeds is among those that judge what was found. Over several scenarios, the share of the one that counts.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,6 +15,7 @@ from navcore.design.measures import Setting, read_objective
 from navcore.design.search import Search
 from navcore.design.shares import shares_of, smooth_share
 from navcore.design.ship import Ship
+from navcore.design.spread import NO_SPREAD, Spread
 from navcore.design.vary import Varied, present, read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
 from navcore.engine.load import estimated_seconds
@@ -24,7 +25,8 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
 _FIRST_SEED = SEARCHED + 10_000
-_SEEDS, _FEWEST_SEEDS = 64, 8
+_SEEDS, _FEWEST_SPREAD, _FEWEST_SEEDS = 64, 16, 8
+"""Of all scenarios together; of each of several; and of each where runs take long."""
 _SPREAD = 16
 """Settings by the covariance, a parameter."""
 _CHOSEN, _AS_SPREAD = 8, 24
@@ -48,6 +50,7 @@ def best_settings(
     starts: Sequence[Method],
     judge: Callable[[Method], float],
     cancelled: Callable[[], bool] | None = None,
+    spread: Spread = NO_SPREAD,
 ) -> list[Method]:
     """Settings of a form with the largest shares, best first.
 
@@ -61,12 +64,14 @@ def best_settings(
         Size of the largest quantity over its limit by the covariance: what to look at first.
     cancelled : callable, optional
         When it says True, the best so far are given.
+    spread : Spread
+        Scenarios beside that of the form in which a setting has to hold too.
     """
-    space = _Space(form)
+    space, stopped = _Space(form, spread), cancelled or (lambda: False)
     generator = np.random.default_rng(1)
-    spread = _spread(len(space.varied), _SPREAD * len(space.varied))
-    ranked = sorted(spread.tolist(), key=lambda place: _judged(space, place, judge))
-    first = [*map(space.place, starts), *ranked[:_CHOSEN], *spread[:_AS_SPREAD].tolist()]
+    sown = _sown(len(space.varied), _SPREAD * len(space.varied))
+    ranked = sorted(sown.tolist(), key=lambda place: _judged(space, place, judge, stopped))
+    first = [*map(space.place, starts), *ranked[:_CHOSEN], *sown[:_AS_SPREAD].tolist()]
     seen: dict[Method, tuple[float, float]] = {}
     places: dict[Method, np.ndarray] = {}
     generation = first
@@ -76,8 +81,8 @@ def best_settings(
             method = space.method(np.clip(place, 0.0, 1.0))
             if method is not None and method not in seen:
                 fresh[method] = np.clip(place, 0.0, 1.0)
-        if fresh and (cancelled is None or not cancelled()):
-            seen |= zip(fresh, space.orders([*fresh]), strict=True)
+        if fresh and not stopped():
+            seen |= zip(fresh, space.orders([*fresh], stopped), strict=True)
             places |= fresh
         if width is None or not seen:
             break
@@ -100,12 +105,14 @@ def _apart(places: Sequence[np.ndarray], least: float, most: int) -> list[np.nda
     return chosen
 
 
-def _judged(space: "_Space", place: list[float], judge: Callable[[Method], float]) -> float:
-    method = space.method(np.array(place))
+def _judged(
+    space: "_Space", place: list[float], judge: Callable[[Method], float], stopped: Callable[[], bool]
+) -> float:
+    method = None if stopped() else space.method(np.array(place))
     return np.inf if method is None else judge(method)
 
 
-def _spread(dimensions: int, count: int) -> np.ndarray:
+def _sown(dimensions: int, count: int) -> np.ndarray:
     """Places spread evenly over the ranges and on their ends, shape (count, dimensions); always the same."""
     from scipy.stats import qmc
 
@@ -116,18 +123,20 @@ def _spread(dimensions: int, count: int) -> np.ndarray:
 class _Space:
     """Settings of a form by the places of its parameters, and their shares."""
 
-    def __init__(self, form: Form) -> None:
-        self._form = form
+    def __init__(self, form: Form, spread: Spread = NO_SPREAD) -> None:
+        self._form, self._spread = form, spread
         self.varied: tuple[Varied, ...] = read_varied(
             form.scenario, [f"method.0.{field}" for field in form.fields]
         )
         self._search = Search(
             [Ship(form.scenario, True, _INTERVALS, drawn=True)], self.varied, read_objective("tilt_rms"), ()
         )
-        self._coarse = coarse(form.scenario)
+        others = (one.model_copy(update={"method": form.scenario.method}) for one in spread.scenarios)
+        self._ships = [Ship(coarse(one), True, _INTERVALS, drawn=True) for one in (form.scenario, *others)]
         runs = (_CHOSEN + _AS_SPREAD) + len(_WIDTHS) * (_PARENTS * _CHILDREN + 1)
-        affordable = int(_LONGEST_S / max(runs * estimated_seconds(self._coarse), 1e-9))
-        self._seeds = max(_FEWEST_SEEDS, min(_SEEDS, affordable))
+        each_s = runs * sum(estimated_seconds(ship.given) for ship in self._ships)
+        most = max(_FEWEST_SPREAD, _SEEDS // len(self._ships))
+        self._seeds = max(_FEWEST_SEEDS, min(most, int(_LONGEST_S / max(each_s, 1e-9))))
 
     def method(self, place: np.ndarray) -> Method | None:
         """Method at a place; None where there is none."""
@@ -151,16 +160,24 @@ class _Space:
             places.append(one.place(float(value)) if np.isfinite(value) else 0.5)
         return np.array(places)
 
-    def orders(self, methods: Sequence[Method]) -> list[tuple[float, float]]:
-        """Keys by which methods are ordered, best first: smooth share, largest median over its limit."""
+    def orders(self, methods: Sequence[Method], stopped: Callable[[], bool]) -> list[tuple[float, float]]:
+        """Keys by which methods are ordered, best first: smooth share, largest median over its limit.
+
+        Once ``stopped`` says True, no order is known any more.
+        """
         numbers = range(_FIRST_SEED, _FIRST_SEED + self._seeds)
-        found = outcomes(self._coarse, methods, numbers)
-        ship = Ship(self._coarse, True, _INTERVALS, drawn=True)
-        shares = shares_of(ship, methods, found)
-        smooth = [
-            smooth_share(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)
-        ]
-        return [(-near, share.order[1]) for near, share in zip(smooth, shares, strict=True)]
+        near: list[list[float]] = [[] for _ in methods]
+        ratios: list[list[float]] = [[] for _ in methods]
+        for ship in self._ships:
+            if stopped():
+                return [(0.0, np.inf)] * len(methods)
+            found = outcomes(ship.given, methods, numbers)
+            shares = shares_of(ship, methods, found)
+            for k, (method, share) in enumerate(zip(methods, shares, strict=True)):
+                near[k].append(smooth_share(Setting(ship, method), [one[k] for one in found]))
+                ratios[k].append(share.order[1])
+        counts = zip(map(self._spread.of_shares, near), map(self._spread.of_ratios, ratios), strict=True)
+        return [(-share, ratio) for share, ratio in counts]
 
 
 def coarse(scenario: Scenario) -> Scenario:

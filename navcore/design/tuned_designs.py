@@ -3,25 +3,21 @@
 Each network is tried in its forms (`navcore.design.forms`): level, in each realisation; whole, with the
 scenario's azimuth networks or one of the catalogue; with the scenario's gyrocompasses. Of the settings that a
 search by shares finds (`navcore.design.share_search`), of the defaults and of the scenario's own methods the
-one with the largest share on other seeds is taken. Over several scenarios the covariance along the run is
-searched instead: the largest of the quantities that it foretells, each over its limit.
+one with the largest share on other seeds is taken; over several scenarios, in the one that a quantile names.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from navcore.damping.kalman import KalmanSettings
 from navcore.design.forms import Form, forms_of, offered
-from navcore.design.measures import Setting, measure, read_objective
-from navcore.design.search import REFUSED, Effort, Search
+from navcore.design.measures import Setting, measure
 from navcore.design.share_search import best_settings, coarse
 from navcore.design.shares import shares_of, smooth_share
 from navcore.design.ship import Ship
-from navcore.design.vary import read_varied
+from navcore.design.spread import NO_SPREAD, Spread
 from navcore.engine.ensemble import SEARCHED, outcomes
 from navcore.engine.load import estimated_seconds
 from navcore.engine.readings import BAND
@@ -35,15 +31,13 @@ from navcore.scenario.requirement import OF_THE_SETTING, Requirement
 from navcore.sensors.reference import Reference
 
 SEARCH_SEEDS, FEW_SEEDS = 400, 16
-"""Of the choice among the settings that a search has found, and of one over several scenarios."""
+"""Of the choice among the settings that a search has found: most of all scenarios, and fewest of each."""
 _CHOICE_S = 30.0
 """Processor time of that choice, about."""
-_CANDIDATES = 3
 _STEADY_S = 1e6
 """Correlation time that a filter is told of a current that does not change."""
 INTERVALS = 96
 """Of a run: coarse, for what a search sees is only a guide."""
-_EFFORT = Effort(5, 5, 40)
 _PEAK = 1.6
 """Largest length of a vector over the root of its largest mean square, about, in the middle of the seeds."""
 _OF_RMS = {"median": math.sqrt(math.log(2.0)), "p95": math.sqrt(math.log(20.0)), "2drms": 2.0}
@@ -52,34 +46,6 @@ _SIGNED = {"growth_per_s": 1.0 / 86400.0, "h_slope_s": 100.0}
 """Size of an excess that counts like the limit itself, where a value may be negative."""
 _AXES = {TILT: (0, 1), VELOCITY: (3, 4), HEADING: (2,), POSITION: (5, 6)}
 """Components of each kind among `navcore.quantities.COMPONENTS`."""
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Scenarios beside the one that is tuned, over which a setting has to hold too.
-
-    Attributes
-    ----------
-    scenarios : tuple of Scenario
-        Of other sensors, seas, latitudes; their methods do not count.
-    quantile : float
-        Which of all scenarios counts, by what a setting makes of them: 0 the worst, 0.5 the median.
-    """
-
-    scenarios: tuple[Scenario, ...] = ()
-    quantile: float = 0.0
-
-    def of_ratios(self, ratios: Sequence[float]) -> float:
-        """Value over the limit that counts: large is bad."""
-        return float(np.quantile(ratios, 1.0 - self.quantile, method="higher"))
-
-    def of_shares(self, shares: Sequence[float]) -> float:
-        """Share of seeds that counts: small is bad."""
-        return float(np.quantile(shares, self.quantile, method="lower"))
-
-
-NO_SPREAD = Spread()
-"""The scenario alone."""
 
 
 def kalman(scenario: Scenario) -> tuple[Method, ...]:
@@ -161,8 +127,8 @@ def tuned_methods(
         if name not in candidates:
             left_out.append((name, reason))
     methods = [method for found in candidates.values() for method in found]
-    everywhere = (scenario, *spread.scenarios) if spread.scenarios else (coarse(scenario),)
-    numbers = range(SEARCHED, SEARCHED + _seeds(everywhere[0], methods, spread))
+    everywhere = [coarse(one) for one in (scenario, *spread.scenarios)]
+    numbers = range(SEARCHED, SEARCHED + _seeds(everywhere, methods))
     shares: list[list[tuple[float, float]]] = []
     for k, one in enumerate(everywhere):
         span = 0.3 / len(everywhere)
@@ -183,12 +149,13 @@ def tuned_methods(
     return best, left_out
 
 
-def _seeds(scenario: Scenario, methods: Sequence[Method], spread: Spread) -> int:
-    """Seeds of the choice: fewer where their runs take long."""
-    if spread.scenarios or not methods:
+def _seeds(everywhere: Sequence[Scenario], methods: Sequence[Method]) -> int:
+    """Seeds of the choice in each scenario: fewer where their runs take long."""
+    if not methods:
         return FEW_SEEDS
-    each_s = estimated_seconds(scenario.model_copy(update={"method": tuple(methods)}))
-    return max(FEW_SEEDS, min(SEARCH_SEEDS, int(_CHOICE_S / max(each_s, 1e-9))))
+    judged = (one.model_copy(update={"method": tuple(methods)}) for one in everywhere)
+    each_s = sum(map(estimated_seconds, judged))
+    return max(FEW_SEEDS, min(SEARCH_SEEDS // len(everywhere), int(_CHOICE_S / max(each_s, 1e-9))))
 
 
 def _best_of(spread: Spread, shares: Sequence[Sequence[tuple[float, float]]], seeds: int) -> int:
@@ -217,51 +184,22 @@ def _best_of(spread: Spread, shares: Sequence[Sequence[tuple[float, float]]], se
 
 def _candidates(form: Form, cancelled: Callable[[], bool] | None, spread: Spread = NO_SPREAD) -> list[Method]:
     """Settings of a form worth a run, the most promising one first; none where all are unstable."""
-    ship = Ship(form.scenario, True, INTERVALS, drawn=True)
+    ships = [Ship(one, True, INTERVALS, drawn=True) for one in (form.scenario, *spread.scenarios)]
+
+    def ratio(method: Method) -> float:
+        return spread.of_ratios([ratio_at(ship, method) for ship in ships])
+
     present = [form.method, *form.own]
-    if form.fields and spread.scenarios:
-        present += _searched(form.scenario, form.fields, cancelled, NO_SPREAD)
-        present += _searched(form.scenario, form.fields, cancelled, spread)
-    elif form.fields:
-        present += best_settings(form, present, lambda method: ratio_at(ship, method), cancelled)
-    stable = [one for one in dict.fromkeys(present) if not Setting(ship, one).instability]
-    ranked = sorted(stable, key=lambda method: _largest_ratio(Setting(ship, method)))
-    if spread.scenarios and ranked:
-        ships = [ship, *(Ship(one, True, INTERVALS, drawn=True) for one in spread.scenarios)]
-        robust = sorted(ranked, key=lambda m: spread.of_ratios([ratio_at(one, m) for one in ships]))
-        ranked = list(dict.fromkeys((robust[0], ranked[0], *robust[1:])))
-        return ranked[:_CANDIDATES]
-    return ranked
+    if form.fields:
+        present += best_settings(form, present, ratio, cancelled, spread)
+    stable = [one for one in dict.fromkeys(present) if not Setting(ships[0], one).instability]
+    return sorted(stable, key=ratio)
 
 
 def ratio_at(ship: Ship, method: Method) -> float:
     """Largest quantity of a method over its limit, by the covariance; infinite where it grows."""
     setting = Setting(ship, method)
     return math.inf if setting.instability else _largest_ratio(setting)
-
-
-def _searched(
-    scenario: Scenario, fields: Sequence[str], cancelled: Callable[[], bool] | None, spread: Spread
-) -> Iterator[Method]:
-    varied = read_varied(scenario, [f"method.0.{field}" for field in fields])
-    search = _ByLimits(scenario, varied, spread)
-    search.cancelled = cancelled
-    search.run(_EFFORT, None)
-    if search.best is not None and search.best[0] < REFUSED:
-        yield search.settings(search.best[1])[0].method
-
-
-class _ByLimits(Search):
-    """Search for the least of the largest quantity over its limit, in the scenario or over a spread."""
-
-    def __init__(self, scenario: Scenario, varied: Sequence[Any], spread: Spread) -> None:
-        others = (one.model_copy(update={"method": scenario.method}) for one in spread.scenarios)
-        ships = [Ship(one, True, INTERVALS, drawn=True) for one in (scenario, *others)]
-        super().__init__(ships, varied, read_objective("tilt_rms"), ())
-        self._spread = spread
-
-    def value(self, settings: Sequence[Setting]) -> float:
-        return self._spread.of_ratios([_largest_ratio(setting) for setting in settings])
 
 
 def _largest_ratio(setting: Setting) -> float:

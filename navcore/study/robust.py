@@ -13,15 +13,9 @@ from navcore.design.judged import left_out_lines
 from navcore.design.measures import TUNING_INTERVALS
 from navcore.design.shares import Share, require_limits, shares_of
 from navcore.design.ship import Ship
+from navcore.design.spread import Spread
 from navcore.design.stated import assumed_zero
-from navcore.design.tuned_designs import (
-    INTERVALS,
-    Spread,
-    held_as_set,
-    kalman,
-    ratio_at,
-    tuned_methods,
-)
+from navcore.design.tuned_designs import INTERVALS, held_as_set, kalman, ratio_at, tuned_methods
 from navcore.engine.ensemble import outcomes
 from navcore.engine.verdicts import wilson
 from navcore.foundation.answers import Answer, Column, Table, number
@@ -192,8 +186,8 @@ def robust_designs(
         Which point counts, by the share of seeds that meet all limits there: 0 the worst, 0.1 the one that a
         tenth of the points falls short of.
     as_set : bool
-        Judge the scenario's methods as they stand; else each network of the catalogue is tuned twice, for the
-        scenario and for the point that counts of several, and a Kalman filter stands beside them.
+        Judge the scenario's methods as they stand; else each network of the catalogue, tuned for the largest
+        share that counts over the scenario and several points, and a Kalman filter.
     progress, cancelled : callable, optional
         Told the fraction done, 0..1; when ``cancelled`` says True, the command ends without a result.
 

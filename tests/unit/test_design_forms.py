@@ -11,7 +11,8 @@ from navcore.design.forms import forms_of, offered
 from navcore.design.share_search import _Space, best_settings, coarse
 from navcore.design.shares import shares_of
 from navcore.design.ship import Ship
-from navcore.design.tuned_designs import INTERVALS, NO_SPREAD, Spread, _best_of, ratio_at, tuned_methods
+from navcore.design.spread import NO_SPREAD, Spread
+from navcore.design.tuned_designs import INTERVALS, _best_of, ratio_at, tuned_methods
 from navcore.engine.ensemble import outcomes
 from navcore.networks.unity2 import Unity2Network
 from navcore.scenario.method import Method

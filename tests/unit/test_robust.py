@@ -1,15 +1,21 @@
 """Designs over a study's spreads: what counts, what it costs, and what is refused."""
 
 import json
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from navcore.design.designs import designs
-from navcore.design.tuned_designs import Spread
+from navcore.design.shares import shares_of
+from navcore.design.ship import Ship
+from navcore.design.spread import Spread
+from navcore.design.tuned_designs import INTERVALS, tuned_methods
+from navcore.engine.ensemble import outcomes
 from navcore.foundation.errors import InputError, StoppedError
 from navcore.scenario.file import load, to_toml
+from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.study.model import Study
 from navcore.study.robust import Robust, robust_designs
@@ -71,8 +77,9 @@ def test_a_quantile_takes_a_value_that_is_there() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(300)
 def test_what_is_tuned_for_the_spread_is_worst_no_worse_than_what_is_tuned_for_the_scenario() -> None:
-    """Of each network both settings are judged; over the spread the better one is taken."""
+    """Each network is searched by the share that counts."""
     found = robust_designs(_scenario(), _study(), 20)
     alone = designs(_scenario(), 4)
     tuned = _scenario().model_copy(update={"method": tuple(share.method for share in alone.methods[:12])})
@@ -129,3 +136,56 @@ def test_what_cannot_be_judged_is_refused(text: str, options: dict[str, float], 
 def test_a_stop_ends_without_a_half_judged_result() -> None:
     with pytest.raises(StoppedError):
         robust_designs(_scenario(), _study(), 6, as_set=True, cancelled=lambda: True)
+
+
+SPREAD_SHIP = {
+    "run": {"duration_h": 8.0, "step_s": 10.0, "output_step_s": 600.0},
+    "site": {"lat_deg": 45.0},
+    "method": [{"name": "free"}],
+    "requirement": [
+        {"quantity": "tilt_max_arcsec", "at_most": 32.0},
+        {"quantity": "velocity_max_mps", "at_most": 1.3},
+    ],
+}
+SENSORS = {
+    "gyro_bias_std_dph": 0.006,
+    "accel_bias_std_ug": 30.0,
+    "gyro_arw_dpsh": 0.002,
+    "accel_vrw_ugpshz": 10.0,
+}
+DRIFTING = {"kind": "log", "noise_mps": 0.1, "drift_mps": 0.1}
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_over_a_spread_the_offer_is_within_three_points_of_a_grids_best() -> None:
+    """The covariance as a guide offered a setting of unity2 four points below the grid's best."""
+    base, *others = (
+        Scenario.parse(SPREAD_SHIP | {"imu": SENSORS | imu, "reference": DRIFTING | log})
+        for imu, log in (
+            ({}, {}),
+            ({}, {"drift_mps": 0.2}),
+            ({"gyro_bias_std_dph": 0.009}, {}),
+            ({"gyro_arw_dpsh": 0.006}, {}),
+        )
+    )
+    tuned, _ = tuned_methods(base, lambda _: None, None, Spread(tuple(others)), ids=("unity2",))
+    (offered,) = (one for one in tuned if one.name == "unity2")
+    blocks = [
+        {"id": "unity2", "zeta": zeta, "r": r, "zeta2": zeta2}
+        for zeta, r, zeta2 in product((0.4, 0.7, 1.0, 1.5), (1.05, 1.3, 1.8), (0.8, 1.4))
+    ]
+    grid = [Method.model_validate({"damping": "external", "network": block}) for block in blocks]
+    methods = [offered, *grid]
+    shares = [
+        [
+            share.met
+            for share in shares_of(
+                Ship(one, True, INTERVALS, drawn=True), methods, outcomes(one, methods, range(200))
+            )
+        ]
+        for one in (base, *others)
+    ]
+    counted = np.min(shares, axis=0)
+    assert 0.1 < counted[1:].max() < 0.95, "the limits must tell settings apart"
+    assert counted[0] >= counted[1:].max() - 0.03
