@@ -53,7 +53,7 @@ class ServeCommand:
         Where the damped output is sent as NMEA 0183, udp://HOST:PORT.
     send_method : str
         Whose output is sent; the first method's without it.
-    as_class : bool
+    class_ : bool
         The visitors form a class: each has a session of his own and follows the lesson that one of them
         leads, whose page shows the answers and sketches of all (docs/teaching.md). Not with --workers.
     open : bool
@@ -74,7 +74,7 @@ class ServeCommand:
     live_scenario: Annotated[str, arg(metavar="SCENARIO")] = ""
     send: Annotated[str | None, arg(metavar="URL")] = None
     send_method: Annotated[str, arg(metavar="NAME")] = ""
-    as_class: Annotated[bool, arg(name="class")] = False
+    class_: Annotated[bool, arg(name="class")] = False
     open: bool = False
 
     def execute(self) -> int:
@@ -89,14 +89,14 @@ class ServeCommand:
 
             use_lessons(self.lessons)
         live = self._live()
-        if self.as_class and self.workers != 1:
+        if self.class_ and self.workers != 1:
             allowed = Text("must be left out with --class: a class is one process")
             raise InputError(Fault("serve", "--workers", self.workers, allowed))
         token = find_token(self.token, self.token_file, self.generate_token, os.environ)
         named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()
         cluster = self.cluster or os.environ.get(CLUSTER) or None
         begin = (
-            partial(serve, open_browser=self.open, as_class=self.as_class)
+            partial(serve, open_browser=self.open, as_class=self.class_)
             if self.workers == 1
             else partial(serve_with_workers, count=self.workers)
         )

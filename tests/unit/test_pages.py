@@ -69,7 +69,7 @@ def test_the_interface_names_every_option_of_every_command():
     others = {name: command for name, command in _COMMANDS.items() if name not in QUESTIONS}
     assert rows.keys() == others.keys()
     for name, command in others.items():
-        options = {f"--{each.name.replace('_', '-')}" for each in fields(command)}
+        options = {f"--{each.name.rstrip('_').replace('_', '-')}" for each in fields(command)}
         first = fields(command)[0]
         positional = {f"--{first.name}"} if "Positional" in str(first.type) else set()
         named = set(re.findall(r"`(--[\w-]+)", rows[name])) | {"--json", "--quiet"} & options
