@@ -46,7 +46,8 @@ _DASHES: tuple[Any, ...] = (
 _WORDS = {"dot": (0, (1, 1.5)), "dash": (0, (4, 2)), "dashdot": (0, (4, 2, 1, 2)), "solid": "solid"}
 _MARKERS = {"circle": "o", "x": "x", "cross": "+", "diamond": "D", "square": "s"}
 _RGBA = re.compile(r"rgba?\(([^)]*)\)")
-_PART = re.compile(r"<(sub|sup)>(.*?)</\1>", re.DOTALL)
+_PART = re.compile(r"<(sub|sup)>([^<]*)</\1>")
+_TAG = re.compile(r"</?\w[^<>]*>")
 
 
 def printed_figure(
@@ -350,4 +351,4 @@ def _plain(text: str) -> str:
     text = _PART.sub(
         lambda m: f"$^{{\\mathrm{{{m[2]}}}}}$" if m[1] == "sup" else f"$_{{\\mathrm{{{m[2]}}}}}$", text
     )
-    return html.unescape(re.sub(r"</?\w+[^>]*>", "", text))
+    return html.unescape(_TAG.sub("", text))
