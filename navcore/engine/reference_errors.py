@@ -150,7 +150,7 @@ def _reference(scenario: Scenario) -> Recording:
     truth = scenario.truth
     recording = load(truth.file or (), field="file", map_file=truth.map)
     streams = {name: one.shifted(truth.clock_s) for name, one in recording.quantities().items()}
-    recording = Recording(**streams, sources=recording.sources)
+    recording = Recording(**streams, sources=recording.sources, deviations={})
     position = position_of(recording, truth.file)
     found = jumps_of(position, recording.velocity)
     if found:
