@@ -211,7 +211,10 @@ def test_a_long_run_marks_the_old_picture_and_is_stopped(
     assert (fresh.run, fresh.digest) == (number, digest)
     monkeypatch.undo()
     fresh.box("run.duration_h").fill("4")
+    fresh.box("run.duration_h").press("Enter")
     fresh.wait_for_run(number)
+    fresh.settle()
+    assert session.run.scenario.run.duration_h == 4.0
     fresh.page.wait_for_function("() => document.querySelector('#sb-status').textContent.startsWith('Run')")
     assert fresh.page.evaluate("look.opacity") == 1.0
 

@@ -44,6 +44,8 @@ def show_me(bench: Bench, lesson: Lesson, index: int) -> None:
 
 
 def answer(bench: Bench, given: str, *, choices: bool) -> None:
+    """Give an answer once the page shows all that was sent: a late verdict would replace the box."""
+    bench.settle()
     if choices:
         press(bench, f"answer {given}")
         return
