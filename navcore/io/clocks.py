@@ -233,7 +233,10 @@ def _half_width(ratio: np.ndarray, best: int) -> float:
     if last > first:
         return 0.5 * float(last - first) + 0.5
     near = ratio[max(best - 1, 0) : best + 2]
-    bend = float(np.sort(near[np.isfinite(near)])[1:].mean()) if near.size > 1 else np.inf
+    if near.size < 2:
+        return 0.0
+    beside = np.sort(near[np.isfinite(near)])[1:]
+    bend = float(beside.mean()) if beside.size else 0.0
     return float(np.sqrt(_NINETY_FIVE / bend)) if bend > 0.0 else 1.0
 
 

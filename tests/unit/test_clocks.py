@@ -8,6 +8,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal import lfilter
 
 from navcore.io.agreement import findings
+from navcore.io.clocks import _half_width
 from navcore.io.series import Recording, Series
 
 _HOURS = 8.0
@@ -61,3 +62,9 @@ def test_a_log_in_time_has_no_clock_told(tide: float) -> None:
 @pytest.mark.parametrize("tide", [0.0, 1.0])
 def test_a_log_whose_speed_does_not_change_says_nothing_of_its_clock(tide: float) -> None:
     assert findings(_recording(120.0, tide, changes=0.0)) == []
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_shift_between_two_that_cannot_be_judged_is_known_to_a_step() -> None:
+    """A damaged file gave a mean of nothing, with a warning of numpy on the terminal."""
+    assert _half_width(np.array([np.inf, 1.0, np.inf]), 1) == 1.0
