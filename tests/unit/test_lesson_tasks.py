@@ -2,12 +2,10 @@
 
 import math
 from collections.abc import Iterable
-from functools import lru_cache
 
 import numpy as np
 import pytest
 
-from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from schuler_bench.editing.edits import with_value
 from schuler_bench.views.learn.asked import (
@@ -21,14 +19,10 @@ from schuler_bench.views.learn.asked import (
 from schuler_bench.views.learn.lessons import Lesson, lessons
 from schuler_bench.views.learn.shown import task_html
 from schuler_bench.views.learn.view import spec_at
+from tests.answers import run_of
 
 LESSONS = lessons()
 STEPS = [(lesson, i) for lesson in LESSONS for i in range(len(lesson.steps))]
-
-
-@lru_cache(maxsize=64)
-def run_of(lesson: str, index: int) -> Run:
-    return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
 
 
 SKETCHES = [(lesson, i) for lesson, i in STEPS if lesson.steps[i].sketch is not None]

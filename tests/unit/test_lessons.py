@@ -3,14 +3,12 @@
 import math
 import re
 from collections.abc import Iterator
-from functools import lru_cache
 
 import numpy as np
 import pytest
 
 from navcore.averaging.parameters import Averaging
 from navcore.damping.gyrocompass import Gyrocompass
-from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.law.policy import POLICIES
@@ -46,7 +44,7 @@ from schuler_bench.views.learn.lessons import Lesson, lessons, read_lesson, to_h
 from schuler_bench.views.learn.names import Named, named
 from schuler_bench.views.learn.view import spec_at
 from schuler_bench.views.log.view import _KINDS
-from tests.answers import names_in, right_answer
+from tests.answers import names_in, right_answer, run_of
 
 
 def all_fields() -> Iterator[tuple[str, FieldSpec]]:
@@ -155,11 +153,6 @@ preset = "zha-fast"
 ## First
 Text with $x$ and {{schuler.period}}.
 """
-
-
-@lru_cache(maxsize=64)
-def run_of(lesson: str, index: int) -> Run:
-    return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
 
 
 def test_there_are_the_eleven_lessons_with_questions_and_actions() -> None:
