@@ -1,7 +1,7 @@
 """Small plots as SVG: axes with ticks, curves, dots and words, in px of the picture."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,6 +98,31 @@ def _step(least: float) -> float:
     """Step of 1, 2 or 5 times a power of ten, at least as large."""
     power = 10.0 ** math.floor(math.log10(least))
     return next(power * step for step in _STEPS if power * step >= least * (1.0 - 1e-9))
+
+
+def picture(width: int, height: int, told: str, parts: Iterable[str]) -> str:
+    """Frame of a picture, no wider than its column.
+
+    Parameters
+    ----------
+    width, height : int
+        Px.
+    told : str
+        What it shows, for those who do not see it.
+    parts : iterable of str
+        Axes, words and keys.
+    """
+    return Text(
+        '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
+        'style="max-width:100%" aria-label="{told:html}" font-family="{font}" font-size="12" '
+        'fill="{ink}">{parts}</svg>',
+        width=width,
+        height=height,
+        told=told,
+        font=style.SVG_FONT,
+        ink=style.INK,
+        parts=Text.joined("", parts),
+    )
 
 
 def word(x: float, y: float, words: str, anchor: str = "start") -> str:

@@ -13,7 +13,7 @@ from navcore.foundation.units import DEG
 from navcore.io.series import utc_text
 from schuler_bench.live.live import Curves, Live, Status, present
 from schuler_bench.plots import style
-from schuler_bench.plots.svg_axes import Box, Curve, axes, word
+from schuler_bench.plots.svg_axes import Box, Curve, axes, picture, word
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.shell import notices
 
@@ -186,14 +186,4 @@ def _svg(names: tuple[str, ...], curves: Curves) -> str:
         axes(Box(_LEFT, below, width, _PANEL), lower),
         word(_WIDTH - _RIGHT, _HEIGHT - 6.0, Text("time (h)"), "end"),
     )
-    return Text(
-        '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
-        'style="max-width:100%" aria-label="{told:html}" font-family="{font}" font-size="12" '
-        'fill="{ink}">{parts}</svg>',
-        width=_WIDTH,
-        height=_HEIGHT,
-        told=_TOLD,
-        font=style.SVG_FONT,
-        ink=style.INK,
-        parts=Text.joined("", parts),
-    )
+    return picture(_WIDTH, _HEIGHT, _TOLD, parts)

@@ -6,7 +6,7 @@ from navcore.fitting.along_track import LogAlongTrack
 from navcore.foundation.text import Text
 from navcore.sensors.true_state import horizontal_state, to_ship
 from schuler_bench.plots import style
-from schuler_bench.plots.svg_axes import Box, Curve, axes, key, word
+from schuler_bench.plots.svg_axes import Box, Curve, axes, key, picture, word
 
 WIDTH, HEIGHT = 312, 244
 _LEFT, _RIGHT, _TOP, _PANEL, _BETWEEN = 46, 8, 24, 76, 40
@@ -40,17 +40,7 @@ def log_svg(log: LogAlongTrack, delay_s: float) -> str:
         word(_LEFT, below - 8.0, Text("difference (m/s)")),
         word(WIDTH - _RIGHT, HEIGHT - 2.0, Text("time (min)"), "end"),
     )
-    return Text(
-        '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
-        'style="max-width:100%" aria-label="{told:html}" font-family="{font}" font-size="12" '
-        'fill="{ink}">{panels}</svg>',
-        width=WIDTH,
-        height=HEIGHT,
-        told=_TOLD,
-        font=style.SVG_FONT,
-        ink=style.INK,
-        panels=Text.joined("", panels),
-    )
+    return picture(WIDTH, HEIGHT, _TOLD, panels)
 
 
 def _means(values: np.ndarray) -> np.ndarray:

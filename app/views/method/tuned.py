@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from navcore.foundation.text import Text
 from navcore.law.policy.adaptive import SUN_TABLE
 from schuler_bench.plots import style
-from schuler_bench.plots.svg_axes import word
+from schuler_bench.plots.svg_axes import picture, word
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number, round_up
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 312, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 40, 10, 24, 36
+_TOLD = Text("damping ratio over velocity difference, found and Sun's")
 _MARKS = (1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 
@@ -50,16 +51,7 @@ def table_svg(tuning: Tuning, color: str) -> str:
         'stroke-width="1.6" stroke-dasharray="6 4"/>',
         word(_LEFT + 167, 14, Text("Sun, Table 1")),
     )
-    return Text(
-        '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
-        'style="max-width:100%" aria-label="damping ratio over velocity difference, found and Sun\'s" '
-        'font-family="{font}" font-size="12" fill="{ink}">{parts}</svg>',
-        width=WIDTH,
-        height=HEIGHT,
-        font=style.SVG_FONT,
-        ink=style.INK,
-        parts=Text.joined("", parts),
-    )
+    return picture(WIDTH, HEIGHT, _TOLD, parts)
 
 
 def _axes(across: float, high: float, at) -> str:
